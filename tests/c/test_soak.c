@@ -11,7 +11,7 @@
  *
  * A voice that answers again and again: words ahead of their sound, told twice, too late, and cancelled, by a clock that
  * stumbles. Each moment has its frame, the face rests between answers, and every hour one answer moves it as at first,
- * within a hair.
+ * within 16 FAP units.
  *
  * Nothing beside the structures and their workspaces is ever written to.
  */
@@ -691,8 +691,9 @@ static unsigned answer(int16_t kept[ANSWER][LABIAL_CHANNELS])
         follow(20);
     talk.kept = NULL;
     assert_true(talk.moved > 50u);
+    const unsigned frames = talk.frames; /* those of the rest are counted anew */
     come_to_rest();
-    return talk.frames;
+    return frames;
 }
 
 /* Goes on with the answer by one step: more of it becomes known, again or too late, it ends, or it is cancelled. */
@@ -744,6 +745,7 @@ TEST(answers_go_on_for_hours)
     follow((uint32_t)begin);
     (void)answer(first); /* from the neutral face; all others from a pause */
     const unsigned frames = answer(first);
+    assert_int_equal(frames, ANSWER);
     while (talk.now < begin + length) {
         if (talk.words == 0)
             begin_answer(1u + fixture_below(&talk.random, WORDS), 60, 500);

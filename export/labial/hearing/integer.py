@@ -308,10 +308,15 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
     """The same as a stream delivers it: it fades in from rest, rests before the first voice, in silence and, unless it
     is to be `exact`, at the end, for which frames are added to the FAPs."""
     told = _of_sound(tables, sound, rate, begin)
+    return told.heard._replace(faps=(_delivered(tables, told, exact) + 8) >> 4)
+
+
+def _delivered(tables: HearingTables, told: _Told, exact: bool) -> np.ndarray:
+    """(T, 13) the poses of :func:`delivered`, Q4."""
     pose = _faded(_resting(told.pose, told.still, tables.ahead + SMOOTHING))
     if len(pose) and not exact and np.abs(pose[-1]).max() > round(16 * NEAR):
         pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
-    return told.heard._replace(faps=(pose + 8) >> 4)
+    return pose
 
 
 def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: bool = False,
@@ -319,7 +324,7 @@ def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: 
     """(T, 15) int64: the shares of sounds in the frames that :func:`delivered` has (``labial_hear_visemes``), of a
     model whose classes are phonemes."""
     told = _of_sound(tables, sound, rate, begin)
-    count, frames = len(told.pose), len(delivered(tables, sound, rate, exact, begin).faps)
+    count, frames = len(told.pose), len(_delivered(tables, told, exact))
     place = {name: k for k, name in enumerate(VISEMES)}
     classes = [place[VISEME_OF[name]] if name in VISEME_OF else -1 for name in tables.classes]
     leaders = np.array(classes)[told.leaders]
@@ -356,7 +361,7 @@ def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
 
 
 def _rests(silent: np.ndarray, ahead: int) -> np.ndarray:
-    """(T,) int64, Q14: the share of each pose that is left of it there."""
+    """(T,) int64, Q14: how much of each pose is left there."""
     padded = np.concatenate([np.ones(SILENT_BEFORE, dtype=bool), silent, np.ones(ahead, dtype=bool)])
     span = SILENT_BEFORE + 1 + min(ahead, RESTING)
     still = [padded[t : t + span].all() for t in range(len(silent))]
