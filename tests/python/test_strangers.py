@@ -492,14 +492,14 @@ def test_motion_of_hours_is_told(tmp_path: Path, hours: int, said: bool) -> None
 
 
 def _wav(samples: int, rate: int = 16_000, channels: int = 1, data: Optional[int] = None, riff: Optional[int] = None,
-         width: int = 2) -> bytes:
-    """A WAV file whose heads say what is wanted."""
-    length = samples if data is None else data
+         width: int = 2, kind: int = 1, content: bytes = b"") -> bytes:
+    """A WAV file whose heads say what is wanted; its samples are 0, or `content`."""
+    length = (samples or len(content)) if data is None else data
     whole = (36 + length if riff is None else riff) & 0xffffffff
     each = channels * width & 0xffff
     return (struct.pack("<4sI4s4sI", b"RIFF", whole, b"WAVE", b"fmt ", 16)
-            + struct.pack("<HHIIHH", 1, channels, rate, min(rate * each, 2**32 - 1), each, 8 * width)
-            + struct.pack("<4sI", b"data", length) + bytes(samples))
+            + struct.pack("<HHIIHH", kind, channels, rate, min(rate * each, 2**32 - 1), each, 8 * width)
+            + struct.pack("<4sI", b"data", length) + bytes(samples) + content)
 
 
 SOUNDS: Dict[str, Tuple[Callable[[], bytes], Optional[str]]] = {
@@ -513,6 +513,8 @@ SOUNDS: Dict[str, Tuple[Callable[[], bytes], Optional[str]]] = {
     "hours of 8 bits": (lambda: _wav(999_000, 1_000, 1, width=1), ""),
     "nothing": (lambda: _wav(0), None),
     "no head": (lambda: b"RIFF" + bytes(900_000), "not a sound that can be read"),
+    "loud floats": (lambda: _wav(0, width=4, kind=3, content=struct.pack("<f", 3e38) * 200_000), "a sample is "),
+    "parts without end": (lambda: _wav(0, content=bytes(8) * 110_000), ""),
 }  # fmt: skip
 
 
@@ -534,6 +536,23 @@ def test_sounds_that_last_for_days(tmp_path: Path, told: Told) -> None:
     assert os.path.getsize("a.flac") <= LARGEST
     said = told("align", "a.flac", "--text", "a")
     assert said.startswith("a.flac: it lasts at least ") and said.endswith(" that are read"), said
+
+
+# ---- Texts -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["9" * 90_000, "1:2:3:" * 15_000, "hello " * 15_000], ids=["digits", "times", "words"])
+def test_long_texts(told: Told, text: str) -> None:
+    """A synthesiser would need minutes and gigabytes for them."""
+    said = told("say", text, "-o", "a.html")
+    assert said.startswith("the text has 90,000 characters, more than the 1,000 "), said
+
+
+@needs_runtime
+def test_long_texts_of_a_recording(tmp_path: Path, told: Told) -> None:
+    """Nobody speaks them: they are the page's title."""
+    (tmp_path / "a.wav").write_bytes(_wav(64_000))
+    assert not told("say", "hello " * 15_000, "--audio", "a.wav", "-o", "a.html")
 
 
 # ---- Binary models ---------------------------------------------------------------------------------------------------

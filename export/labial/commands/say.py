@@ -44,12 +44,16 @@ def add_say(command: argparse.ArgumentParser) -> None:
 
 def run_say(options: argparse.Namespace) -> int:
     """Writes the page, the frames or the timings."""
+    from labial.files.limits import MESSAGE_TEXT
     from labial.files.outputs import check, check_suffix
 
     check(options.output)
     form = check_suffix(options.output, *_SUFFIXES) if options.output else ".lab"
     if not options.text.strip():
         raise LabialError("there is nothing to say: the text is empty")
+    if options.audio is None and len(options.text) > MESSAGE_TEXT:
+        raise LabialError(f"the text has {len(options.text):,} characters, more than the {MESSAGE_TEXT:,} that are "
+                          "said at once; say it in parts, or give a recording of it with --audio")
     with ExitStack() as stack:
         audio, timings = options.audio, None
         if audio is None:

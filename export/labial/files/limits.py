@@ -52,6 +52,8 @@ PAGE = 24_000_000
 SOUND, SOUND_RATIO = 1_000_000_000, 100
 #: Samples per second, and channels, of a sound that is read.
 SOUND_RATES, SOUND_CHANNELS = (1_000, 768_000), 64
+#: Largest sample of a sound of floats; full scale is 1.
+SOUND_PEAK = 1e6
 
 #: Of a service's message: levels of lists and objects, documents in it, items that it times, fields of an object of a
 #: client library; characters of a text. The services' table has the same limits for JavaScript.

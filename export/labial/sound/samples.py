@@ -74,6 +74,7 @@ def _checked(path: PathLike, samples: np.ndarray) -> np.ndarray:
         raise DataError(path, None, "a sample is not finite")
     if not len(samples):
         raise DataError(path, None, "a sound without samples")
+    limits.refuse(path, "a sample is", np.abs(samples).max(), limits.SOUND_PEAK, "times full scale")
     return samples
 
 
