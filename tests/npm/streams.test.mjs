@@ -436,9 +436,11 @@ test("text is written as UTF-8, whole characters only", () => {
 
 test("more than may wait is refused", () => {
     const stream = mouth.stream();
+    let pushed = 0;
     assert.throws(() => {
-        for (;;) stream.push("AA", 1);
+        for (;; pushed++) stream.push("AA", 1);
     }, { code: -8, message: "the queue is full: take from it and push again" });
+    assert.equal(pushed, 65536);
     stream.end();
     let frames = 0;
     while (!stream.done) frames += stream.tick() ? 1 : 0;

@@ -154,6 +154,7 @@ def test_captions_follow_the_words(opened: Any) -> None:
         face.words = words;
         const show = face.show;
         face.show = (faps) => {
+            if (seen.length % 3 === 0) face.words = words; // again: the word is marked nevertheless
             show.call(face, faps);
             seen.push([face.position, face.caption, face.shadowRoot.querySelector("mark")?.textContent ?? ""]);
         };

@@ -218,6 +218,21 @@ def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
     page.evaluate("hearing.close()")
 
 
+def test_a_bundle_without_the_processors_file_has_its_text(page: Page) -> None:
+    """esbuild and rollup do not emit it; the page loads what stands in the package as text."""
+    page.evaluate("""(() => {
+        const add = AudioWorklet.prototype.addModule;
+        window.added = [];
+        AudioWorklet.prototype.addModule = function (address) {
+            added.push(String(address).split(":")[0]);
+            return String(address).includes("labial-tap.js") ? Promise.reject(new Error("404")) : add.call(this, address);
+        };
+    })()""")
+    page.evaluate("hear('node', 0, {})")
+    page.wait_for("Math.abs(face.faps[4]) > 100")
+    assert page.evaluate("hearing.close(), heard.over = true, added") == ["http", "blob", "blob"]  # the recorder's as well
+
+
 def test_what_cannot_be_heard_is_told(page: Page) -> None:
     """Catches an error of the browser's that says nothing, and one for a page without https."""
     attempt = "({}).then(() => '', ({{ message }}) => message)"

@@ -328,12 +328,14 @@ def test_degrees_are_pulses(tmp_path: Path) -> None:
 
 def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
     """At 50 Hz the register holds 121, a tick is 122 periods of 25 MHz: 4.88 us, and 1500 us are 307 of them."""
-    (tmp_path / "face.toml").write_text('unit = "pca9685"\n' + JAW.replace("1400", "1500").replace("1900", "2000"))
+    (tmp_path / "face.toml").write_text('unit = "pca9685"\n' + JAW.replace("1400", "1500").replace("1900", "2000")
+                                        + "slew = 2\nacceleration = 2\n")
     rig = read(tmp_path / "face.toml", "face")
     assert "#define FACE_PCA9685_PRESCALE 121\n" in table.header(rig)
     [jaw] = convert(rig)
     # Limits are rounded inwards (1500 / 4.88 = 307.4, 2000 / 4.88 = 409.8), and the neutral follows them.
     assert (jaw.neutral, jaw.minimum, jaw.maximum) == (308, 308, 409)
+    assert (jaw.slew, jaw.acceleration) == (1, 1)  # 2 us are less than half a tick, and 0 would be no limit
 
 
 def test_drawing_shows_every_output(tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ import labial
 from oracle import times
 from regenerate_voices import SOUNDS, WORDS
 from runtime import needs_runtime
+from labial.core.words import OwnWords
 from services import SAMPLES
 
 pytestmark = needs_runtime
@@ -466,6 +467,20 @@ def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: 
     if "language" in options:
         asked.remove("j")
     assert sorted(asked) == (["21", "ja"] if "language" in options else ["21"])
+
+
+def test_what_others_said_is_kept_within_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A text is looked up once, until there are too many."""
+    made: List[Any] = []
+    monkeypatch.setattr("labial.runtime.voice._SPOKEN", 20)
+    monkeypatch.setattr("labial.runtime.voice.OwnWords", lambda words: made.append(words) or OwnWords(words))
+    monkeypatch.setattr("labial.corpus.words.pronounced", lambda words, _: [["AA", "M"] for _ in words])
+    with labial.Voice(language="de") as voice:
+        for k in range(100):
+            voice.say(f"ja{k % 10 if k < 50 else k}", k, k + 0.4)
+            voice.played(k)
+            assert len(made) <= (10 if k < 50 else 2 * k)
+            assert len(voice._speaker._texts) <= 21 and len(voice._speaker._spoken) <= 21
 
 
 def test_a_voice_needs_no_numpy() -> None:
