@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, Iterator, List, NamedTuple, Pattern, Sequence, Set, Tuple
 
-from python_changes import Change, python_changes
+from python_changes import SYMMETRIC, Change, python_changes
 
 #: Replacements of operators; the left operand of a binary one ends with a word, a number or a closing bracket.
 BINARY: Dict[str, Tuple[str, ...]] = {
@@ -172,7 +172,7 @@ def _texts_changed(language: _Language, source: str, tokens: Sequence[_Token],
     elif token.text in ("if", "while") and tokens[i + 1].text == "(":
         condition = _bracket(source, tokens, i + 1)
         yield "condition", condition, f"(!{condition})"
-    elif token.kind == "word" and token.text not in language.keywords and tokens[i + 1].text == "(":
+    elif token.kind == "word" and token.text not in (*language.keywords, *SYMMETRIC) and tokens[i + 1].text == "(":
         behind = _behind(tokens, i + 1)
         if language is _C or (before.text != "function" and behind not in ("{", "=>")):  # which define
             for swapped in _swaps(source, tokens, i + 1):

@@ -141,7 +141,7 @@ class Packages:
 
     def _fails(self, call: _Call, folder: Path, limit: float) -> bool:
         """Whether a test fails on a copy, or hangs: `limit` seconds of the processor and more."""
-        environment = {**os.environ, **self.variables, "PYTHONDONTWRITEBYTECODE": "1", "LABIAL_REQUIRE_ALL": ""}
+        environment = {**os.environ, **self.variables, "PYTHONDONTWRITEBYTECODE": "1", "LABIAL_REQUIRE_ALL": "ON"}
         if (folder / "export").exists():
             environment["PYTHONPATH"] = str(folder / "export")
         if (folder / "npm").exists():

@@ -29,6 +29,8 @@ _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*$")
 #: Least number that may convert units.
 _FACTOR_MIN = 10
 _CONDITIONS = (ast.If, ast.While, ast.IfExp)
+#: Functions whose two arguments are alike.
+SYMMETRIC = ("min", "max", "minimum", "maximum")
 
 
 def python_changes(source: str) -> Iterator[Change]:
@@ -152,7 +154,8 @@ def _changes(text: _Text, node: ast.AST) -> Iterator[Change]:
         for new in _numbers(node):
             yield text.change("number", node, new)
     elif isinstance(node, ast.Call):
-        yield from _swaps(text, node.args)
+        if getattr(node.func, "attr", getattr(node.func, "id", "")) not in SYMMETRIC:
+            yield from _swaps(text, node.args)
         yield from _swaps(text, [keyword.value for keyword in node.keywords])
     if isinstance(node, _CONDITIONS):
         yield text.change("condition", node.test, f"(not ({text.of(node.test)}))")

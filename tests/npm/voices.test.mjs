@@ -252,6 +252,16 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     await assert.rejects((await Labial.load()).voice(), { message: /^words are not loaded/ });
 });
 
+test("numbers are written out by the caller, once each", async () => {
+    const asked = [];
+    const numbers = (digits) => (asked.push(digits), "people");
+    const own = { 1984: (await labial.words()).phonemes("people").join(" ") };
+    const [written, given] = [await labial.voice({ numbers }), await labial.voice({ own })];
+    for (const voice of [written, given]) for (const start of [0.1, 1.1]) voice.say("1984", start, start + 0.8);
+    assert.deepEqual(rows(written.played(2.2)), rows(given.played(2.2)));
+    assert.deepEqual(asked, ["1984"]);
+});
+
 test("utterances have names: those that are over change nothing", async () => {
     const [one, other] = [await told({}), await told({})];
     for (const voice of [one, other]) {
