@@ -15,7 +15,7 @@ import pytest
 import labial
 from labial.__main__ import main
 from labial.corpus.formats import as_lab, read_timings
-from labial.corpus.service_files import LAST_VISEME, LONGEST_GAP, _phonemes_of
+from labial.corpus.service_files import LAST_VISEME, _phonemes_of
 from labial.corpus.services import SERVICES
 from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
@@ -176,7 +176,8 @@ def test_characters_become_phonemes(text: str, labels: str) -> None:
 
 
 def test_long_blank_is_a_pause() -> None:
-    short, long = _phonemes_of(tokens("m| |m", LONGEST_GAP - 0.01)), _phonemes_of(tokens("m| |m", LONGEST_GAP + 0.01))
+    """More than 150 ms."""
+    short, long = _phonemes_of(tokens("m| |m", 0.14)), _phonemes_of(tokens("m| |m", 0.16))
     assert [item.label for item in short] == ["m", "m"] and [item.label for item in long] == ["m", "", "m"]
 
 
