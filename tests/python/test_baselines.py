@@ -114,6 +114,7 @@ def test_blur_finds_the_width() -> None:
     assert steps.fit_blur(training(held)).width < 0.01
 
 
+@pytest.mark.slow
 def test_dominance_recovers_its_law() -> None:
     fitted = dominance.fit(training(dominated, 40))
     assert fitted.exponent == 1.0

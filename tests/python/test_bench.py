@@ -184,6 +184,7 @@ def test_parts_are_the_members_of_the_headers(tmp_path: Path) -> None:
     assert subprocess.run(command).returncode == 0
 
 
+@pytest.mark.slow
 def test_the_latest_frame_is_that_of_the_rules(tmp_path: Path) -> None:
     # Catches a clock that is off by a tick, a frame that counts though it is not the latest, and malformed input. A
     # phoneme's first frame waits until the next one begins, or the end, and then for the stream's delay of 6 frames.

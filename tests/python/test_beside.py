@@ -599,6 +599,7 @@ def test_a_toy_without_a_server(toy: Path) -> None:
     assert (done.returncode, done.stderr) == (1, f"toy: port {port}: Connection refused\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "complaint"), [
     (signal.SIGKILL, "toy: the server has gone: "), (signal.SIGSTOP, "toy: the server has gone: it sends nothing\n"),
 ])

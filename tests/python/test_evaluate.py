@@ -49,6 +49,7 @@ def folder(corpus, tmp_path_factory) -> Path:
     return where
 
 
+@pytest.mark.slow
 def test_every_method_end_to_end(corpus) -> None:
     # Catches a method that cannot be fitted, and orders that no honest measure would give.
     outcome, = protocol.evaluate(corpus, protocol.Options(splits=1), progress=False)

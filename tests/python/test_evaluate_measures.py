@@ -280,6 +280,7 @@ def evaluate(corpus: Path, out: Path, jobs: int = 1) -> str:
     return (out / "report.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_every_table_of_the_synthetic_corpus_says_so(corpus, tmp_path, capsys) -> None:
     # Catches tables that could be taken for results on people, or for speech.
     text = evaluate(corpus, tmp_path)

@@ -38,6 +38,7 @@ def write(path: Path, **options: object) -> Path:
     return path
 
 
+@pytest.mark.slow
 @needs_runtime
 def test_a_fitted_head_shows_what_is_meant(tmp_path: Path, capsys: pytest.CaptureFixture[str], head: Head,
                                            spoken: Motion) -> None:
@@ -81,6 +82,7 @@ def test_where_a_mesh_stands_changes_nothing(tmp_path: Path) -> None:
     assert moved.moves["chin"] == pytest.approx(head.moves["chin"], abs=1e-3)
 
 
+@pytest.mark.slow
 @needs_runtime
 def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str], spoken: Motion) -> None:
     """From a file to a rig and a picture, with names that a description cannot spell; the rig reaches on this head what

@@ -122,6 +122,7 @@ def test_motion_is_the_same_in_parts(float_tables: FloatTables) -> None:
         assert list(stream.in_parts(tables, [(tables.silence, 0)])) == []
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_stream() -> None:
     """Would catch anything that is kept of each frame: twelve times as many take no more memory."""
     tables = FloatTables(load("speech_en"))

@@ -236,6 +236,7 @@ def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
     return lines
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
@@ -387,6 +388,7 @@ def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -
         sketch / "UnoJaw.ino", "-o", tmp_path / "sketch.o")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),
                     reason="no arm-none-eabi-g++: install gcc-arm-none-eabi and libstdc++-arm-none-eabi-newlib")
 def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
@@ -416,6 +418,7 @@ def tree(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return of
 
 
+@pytest.mark.slow
 def test_platformio(tree: object, tmp_path: Path) -> None:
     """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags."""
     folder = tree("platformio")
@@ -457,6 +460,7 @@ endmacro()
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CMAKE, reason="no cmake")
 @pytest.mark.parametrize(("kind", "functions", "below"), [("esp-idf", ESP_IDF, ""), ("zephyr", ZEPHYR, "zephyr")])
 def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: str, below: str) -> None:

@@ -318,6 +318,7 @@ def test_the_figure_of_check_is_measured_from_the_published_method(given: Path, 
     assert f"published method by {rms:.1f} FAP units" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_export_says_it_too(given: Path, capsys: pytest.CaptureFixture) -> None:
     assert main(["export", str(given / "paper.npz"), "--name", "m", "-o", str(given / "out")]) == 0
     text = capsys.readouterr().out
@@ -363,6 +364,7 @@ def test_the_first_row_is_the_published_method(corpus, training) -> None:
         np.testing.assert_array_equal(frames, trained.fit_paper(training).predict(item))
 
 
+@pytest.mark.slow
 def test_every_choice_changes_something_and_leaves_nothing_behind(corpus, training) -> None:
     """Would catch a choice that is not made, and one that is still made in the next row."""
     given = [utterances(corpus[11:], SPEECH, 50)[0].timeline]

@@ -418,6 +418,7 @@ def run(files: Path, output: str, *models: str) -> int:
                               *(f"{name}={files / name}.npz" for name in models)])  # fmt: skip
 
 
+@pytest.mark.slow
 def test_the_same_figure_every_time_with_all_models_and_phonemes(files, capsys) -> None:
     # Catches dates and random names in the file, a model or a phoneme that is left out.
     assert run(files, "one.svg", "old", "new") == 0 and run(files, "two.svg", "old", "new") == 0

@@ -96,6 +96,7 @@ def test_models_reproduce_unseen_episodes(models):
     assert errors["paper"] < 0.25
 
 
+@pytest.mark.slow
 def test_both_sides_learn_their_mean(corpus):
     """Would catch a side that is learnt alone, and one that moves by itself; the published method learns both."""
     model = train(corpus, method="labial", jobs=1, **OPTIONS)

@@ -17,10 +17,10 @@ from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 import pytest
 
 import labial
+from labial.core.words import OwnWords
 from oracle import times
 from regenerate_voices import SOUNDS, WORDS
 from runtime import needs_runtime
-from labial.core.words import OwnWords
 from services import SAMPLES
 
 pytestmark = needs_runtime

@@ -80,6 +80,7 @@ def test_a_service_that_is_not_there() -> None:
     assert err.startswith("follow_websocket: ws://127.0.0.1:9: ") and "refused" in err.lower()
 
 
+@pytest.mark.slow
 def test_a_service_that_dies() -> None:
     """Catches a traceback, and frames that are not shown since their end is missing."""
     with program("stand_in", "0") as service:
@@ -121,6 +122,7 @@ def test_a_port_that_is_taken() -> None:
     assert (status, out, err.lower()) == (1, "", f"stand_in: port {port}: address already in use\n")
 
 
+@pytest.mark.slow
 def test_limits_of_the_stand_in(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """Catches clients that are kept though they say nothing, texts without end, and a long word that stops others."""
     monkeypatch.setattr(stand_in, "CLIENTS", 2)

@@ -106,6 +106,7 @@ def test_questions_of_all_letters_at_once_are_those_of_one(trained: tables.WordT
                 assert asked.yes[question, values[asked.feature[question]]] == expected, (word, place, question)
 
 
+@pytest.mark.slow
 def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The command from a dictionary to C: equal bytes, words that are read as the dictionary says, C that compiles."""
     for name in "ab":
@@ -128,6 +129,7 @@ def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pyt
     subprocess.run([tmp_path / "main"], check=True)
 
 
+@pytest.mark.slow
 def test_held_out_words_are_measured(small: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["train-words", str(small), "-o", str(tmp_path / "w.npz"), "--leaves", "1000", "--exceptions", "0",
                  "--held-out"]) == 0

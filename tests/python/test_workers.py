@@ -131,8 +131,9 @@ def test_a_killed_worker_is_said_in_one_line(working: List[str]) -> None:
                         "fewer --jobs take less")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc and /dev/shm")
-@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_the_workers(working: List[str], number: signal.Signals) -> None:
     """No process goes on working for nobody, and no semaphore stays."""
     shared = set(os.listdir("/dev/shm"))
@@ -233,6 +234,7 @@ def test_other_versions_are_refused(cluster: str, monkeypatch: pytest.MonkeyPatc
         Workers(1, False, f"dask={cluster}").__enter__()
 
 
+@pytest.mark.slow
 def test_works_where_the_system_refuses_shared_memory(tmp_path: Path) -> None:
     """Catches a training that fails on a machine without semaphores: it goes on in one process."""
     script = tmp_path / "alone.py"
