@@ -36,6 +36,12 @@ class StreamError(LabialError):
         self.result = result  #: LABIAL_ERROR_PHONEME and so on, a negative number (labial/labial.h)
 
 
+def expect(condition: bool, message: str) -> None:
+    """Raises ModelError with the message unless the condition holds."""
+    if not condition:
+        raise ModelError(message)
+
+
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the known one that looks most like it, or all of them."""
     names = list(known)

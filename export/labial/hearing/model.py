@@ -13,7 +13,7 @@ from typing import Any, BinaryIO, Dict, List, Tuple, Union
 
 import numpy as np
 
-from labial.errors import ModelError
+from labial.errors import ModelError, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS, SIDES
@@ -79,36 +79,31 @@ _ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "closed_weight", "
 _OF_BLOCKS = ("dense", "bias", "memory")
 
 
-def _expect(condition: bool, message: str) -> None:
-    if not condition:
-        raise ModelError(message)
-
-
 def check(model: HearingModel) -> None:
     """Raises ModelError unless every array has its shape and is finite, and every size is within the library's."""
     blocks, units, classes = len(model.memories), len(np.atleast_1d(model.last_bias)), len(model.classes)
-    _expect(1 <= blocks <= BLOCKS_MAX, f"there are {blocks} blocks, not 1 to {BLOCKS_MAX}")
-    _expect(units % 4 == 0 and 4 <= units <= UNITS_MAX,
+    expect(1 <= blocks <= BLOCKS_MAX, f"there are {blocks} blocks, not 1 to {BLOCKS_MAX}")
+    expect(units % 4 == 0 and 4 <= units <= UNITS_MAX,
             f"there are {units} units, not a multiple of 4 up to {UNITS_MAX}")
-    _expect(2 <= classes <= CLASSES_MAX and len(set(model.classes)) == classes,
+    expect(2 <= classes <= CLASSES_MAX and len(set(model.classes)) == classes,
             f"there are not 2 to {CLASSES_MAX} classes with different names")
-    _expect(all(name and name.isprintable() for name in model.classes), "a class has a name that is not printable")
+    expect(all(name and name.isprintable() for name in model.classes), "a class has a name that is not printable")
     for past, ahead, dilation in model.memories:
-        _expect(past >= 0 and ahead >= 0 and dilation >= 1 and (past + ahead) * dilation <= REACH_MAX,
+        expect(past >= 0 and ahead >= 0 and dilation >= 1 and (past + ahead) * dilation <= REACH_MAX,
                 f"a memory reaches {past} back and {ahead} ahead, times {dilation}")
-    _expect(model.plan.ahead <= AHEAD_MAX, f"the network looks {model.plan.ahead} frames ahead, not up to {AHEAD_MAX}")
+    expect(model.plan.ahead <= AHEAD_MAX, f"the network looks {model.plan.ahead} frames ahead, not up to {AHEAD_MAX}")
     for name in _OF_BLOCKS:
         count = len(getattr(model, name))
-        _expect(count == blocks, f"{name} has {count} arrays, not one for each of {blocks} blocks")
+        expect(count == blocks, f"{name} has {count} arrays, not one for each of {blocks} blocks")
     for name, value, shape in _shapes(model, units, classes):
-        _expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
-        _expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
+        expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
+        expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
         most = _FAP if name in ("fap_mean", "fap_scale", "closed") else _WEIGHT
-        _expect(bool((np.abs(value) <= most).all()), f"{name} has a value that is not within {-most:g} .. {most:g}")
-    _expect(bool((model.fap_scale > 0).all()), "fap_scale has a value that is not positive")
-    _expect(bool(((model.closing >= 0) & (model.closing <= 1)).all()), "closing has a value that is not within 0 .. 1")
+        expect(bool((np.abs(value) <= most).all()), f"{name} has a value that is not within {-most:g} .. {most:g}")
+    expect(bool((model.fap_scale > 0).all()), "fap_scale has a value that is not positive")
+    expect(bool(((model.closing >= 0) & (model.closing <= 1)).all()), "closing has a value that is not within 0 .. 1")
     low, high = model.close_from, model.close_to
-    _expect(-_WEIGHT <= low < high <= _WEIGHT, f"close_from {low:g} and close_to {high:g} are not in order")
+    expect(-_WEIGHT <= low < high <= _WEIGHT, f"close_from {low:g} and close_to {high:g} are not in order")
 
 
 def _shapes(model: HearingModel, units: int, classes: int) -> List[Tuple[str, np.ndarray, Tuple[int, ...]]]:
@@ -146,13 +141,13 @@ def load(path: PathLike) -> HearingModel:
     """Reads and checks a model of hearing. Raises ModelError, which names the file, for anything else."""
     try:
         members = read_zip(path, None, limits.HEARING)
-        _expect("model.json" in members, "it holds no model.json")
+        expect("model.json" in members, "it holds no model.json")
         text = _texts(members["model.json"])
 
         def member(name: str) -> np.ndarray:
-            _expect(f"{name}.npy" in members, f"it holds no {name}.npy")
+            expect(f"{name}.npy" in members, f"it holds no {name}.npy")
             value = array(name, members[f"{name}.npy"])
-            _expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
+            expect(value.dtype.kind == "f", f"{name} has the type {value.dtype}, not that of real numbers")
             return value.astype(np.float32)
 
         blocks = range(len(text["memories"]))
@@ -175,20 +170,20 @@ def _texts(data: bytes) -> Dict[str, Any]:
         text = json.loads(data.decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise ModelError(f"model.json: not JSON ({str(error)[:80]})") from None
-    _expect(isinstance(text, dict) and text.get("kind") == KIND, f"model.json: its kind is not {KIND}")
+    expect(isinstance(text, dict) and text.get("kind") == KIND, f"model.json: its kind is not {KIND}")
     version = text["format"] if "format" in text else None
-    _expect(version == FORMAT, f"format {version!r:.40}, but this version of labial reads format {FORMAT}")
+    expect(version == FORMAT, f"format {version!r:.40}, but this version of labial reads format {FORMAT}")
     for name in _TEXT:
-        _expect(name in text, f"model.json: no {name}")
-    _expect(isinstance(text["attribution"], str), "model.json: attribution is not text")
+        expect(name in text, f"model.json: no {name}")
+    expect(isinstance(text["attribution"], str), "model.json: attribution is not text")
     for name in ("close_from", "close_to"):
-        _expect(type(text[name]) in (int, float), f"model.json: {name} is not a number")
+        expect(type(text[name]) in (int, float), f"model.json: {name} is not a number")
     classes, memories = text["classes"], text["memories"]
-    _expect(isinstance(classes, list) and all(isinstance(name, str) for name in classes),
+    expect(isinstance(classes, list) and all(isinstance(name, str) for name in classes),
             "model.json: classes is not a list of texts")
-    _expect(isinstance(memories, list) and len(memories) <= BLOCKS_MAX and all(map(_is_memory, memories)),
+    expect(isinstance(memories, list) and len(memories) <= BLOCKS_MAX and all(map(_is_memory, memories)),
             f"model.json: memories is not a list of up to {BLOCKS_MAX} rows of three whole numbers")
-    _expect(isinstance(text["training"], dict), "model.json: training is not an object")
+    expect(isinstance(text["training"], dict), "model.json: training is not an object")
     values = {name: text[name] for name in _TEXT}
     return {**values, "classes": tuple(classes), "memories": tuple(Memory(*row) for row in memories)}
 

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, Dict, Tuple, Union
 import numpy as np
 
 from labial.defaults import KINDS, METHODS
-from labial.errors import ModelError
+from labial.errors import ModelError, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
@@ -111,49 +111,44 @@ class Model:
         return np.concatenate([[0], np.cumsum(self.component_count)]).astype(np.int64)
 
 
-def _expect(condition: bool, message: str) -> None:
-    if not condition:
-        raise ModelError(message)
-
-
 def check(model: Model) -> None:
     """Raises ModelError unless every array has its shape, is finite, within bounds and consistent with the others."""
     p, v = len(model.phonemes), len(model.classes)
-    _expect(model.kind in KINDS, f"kind is {model.kind!r:.40}, not one of {', '.join(KINDS)}")
-    _expect(model.method in METHODS, f"method is {model.method!r:.40}, not one of {', '.join(METHODS)}")
-    _expect(isinstance(model.fps, int) and 1 <= model.fps <= 250, "fps is not a whole number from 1 to 250")
-    _expect(isinstance(model.search_stride, int) and 1 <= model.search_stride <= 8,
+    expect(model.kind in KINDS, f"kind is {model.kind!r:.40}, not one of {', '.join(KINDS)}")
+    expect(model.method in METHODS, f"method is {model.method!r:.40}, not one of {', '.join(METHODS)}")
+    expect(isinstance(model.fps, int) and 1 <= model.fps <= 250, "fps is not a whole number from 1 to 250")
+    expect(isinstance(model.search_stride, int) and 1 <= model.search_stride <= 8,
             "search_stride is not a whole number from 1 to 8")
-    _expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
-    _expect(all(label and label.isprintable() for label in (*model.phonemes, *model.classes)),
+    expect(p > 0 and len(set(model.phonemes)) == p, "phoneme labels are missing or not unique")
+    expect(all(label and label.isprintable() for label in (*model.phonemes, *model.classes)),
             "a label is not printable")
-    _expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r:.40} is not a phoneme")
+    expect(model.silence in model.phonemes, f"the silence phoneme {model.silence!r:.40} is not a phoneme")
     for name, shape in _shapes(model).items():
         value = np.asarray(getattr(model, name))
-        _expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
+        expect(value.shape == shape, f"{name} has shape {value.shape}, not {shape}")
         _check_values(name, value)
     key = np.asarray(model.pair_key)
-    _expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
-    _expect(len(np.unique(key, axis=0)) == len(key), "duplicate pair")
-    _expect(bool(((model.viseme_class >= 0) & (model.viseme_class < v)).all()),
+    expect(bool(((key >= 0) & (key < [p, 2, p])).all()), "a pair names a phoneme or a side that does not exist")
+    expect(len(np.unique(key, axis=0)) == len(key), "duplicate pair")
+    expect(bool(((model.viseme_class >= 0) & (model.viseme_class < v)).all()),
             "a phoneme's viseme class does not exist")
     rests = np.asarray(model.contact, dtype=bool)[model.phonemes.index(model.silence)]
-    _expect(not (rests & np.isneginf(model.floor[model.phonemes.index(model.silence)])).any(),
+    expect(not (rests & np.isneginf(model.floor[model.phonemes.index(model.silence)])).any(),
             "silence has a channel at rest without a floor")
-    _expect(bool((np.diff(model.emission_mean, axis=1) >= 0).all()),
+    expect(bool((np.diff(model.emission_mean, axis=1) >= 0).all()),
             "emission_mean is not ascending, states are not in order")
-    _expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
-    _expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
-    _expect(bool((np.diff(model.protrusion_range) > 0).all()), "protrusion_range does not ascend")
+    expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
+    expect(np.isfinite(model.log_transition).any(axis=1).all(), "a state has no predecessor")
+    expect(bool((np.diff(model.protrusion_range) > 0).all()), "protrusion_range does not ascend")
     _check_source(np.asarray(model.source), computed=len(model.protrusion) > 0)
     lag = np.asarray(model.kernel_lag)
-    _expect(len(lag) < 2 or (len(np.unique(np.diff(lag))) == 1 and lag[1] > lag[0]),
+    expect(len(lag) < 2 or (len(np.unique(np.diff(lag))) == 1 and lag[1] > lag[0]),
             "kernel lags are not evenly spaced and increasing")
     for alias, label in model.aliases.items():
-        _expect(label in model.phonemes, f"alias {alias!r:.40} names the unknown phoneme {label!r:.40}")
+        expect(label in model.phonemes, f"alias {alias!r:.40} names the unknown phoneme {label!r:.40}")
     for missing, label in model.substitutes.items():
         known = missing in model.phonemes and label in model.phonemes
-        _expect(known, f"substitute {missing!r:.40} -> {label!r:.40} is not known")
+        expect(known, f"substitute {missing!r:.40} -> {label!r:.40} is not known")
 
 
 def _check_source(source: np.ndarray, *, computed: bool) -> None:
@@ -161,10 +156,10 @@ def _check_source(source: np.ndarray, *, computed: bool) -> None:
     that has a table of it."""
     for channel, of in enumerate(source.tolist()):
         if of == FROM_CORNERS:
-            _expect(channel == FAP_17, f"source[{channel}]: only FAP 17 can be computed of the corners")
+            expect(channel == FAP_17, f"source[{channel}]: only FAP 17 can be computed of the corners")
         else:
-            _expect(source[of] == of, f"source[{channel}] is {of}, a channel that follows another")
-    _expect(computed == (source[FAP_17] == FROM_CORNERS),
+            expect(source[of] == of, f"source[{channel}] is {of}, a channel that follows another")
+    expect(computed == (source[FAP_17] == FROM_CORNERS),
             "source and protrusion contradict each other on whether FAP 17 is computed of the corners")
 
 
@@ -172,17 +167,17 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
     """The shape of each array; checks first the arrays that determine the sizes."""
     for name, axes in _AXES.items():
         shape = np.shape(getattr(model, name))
-        _expect(len(shape) == axes, f"{name} has shape {shape}, not {axes} axes")
+        expect(len(shape) == axes, f"{name} has shape {shape}, not {axes} axes")
     p, v = len(model.phonemes), len(model.classes)
     _check_values("component_count", np.asarray(model.component_count))
     n, q = int(np.sum(model.component_count)), np.shape(model.log_initial)[-1]
     taps, pairs, knots = len(model.kernel_lag), len(model.pair_key), np.shape(model.pair_shape)[1]
     context = np.shape(model.log_previous)[-1]
-    _expect(q > 0, "there are no states")
-    _expect(context in (0, v), f"context tables have {context} classes, the model {v}")
+    expect(q > 0, "there are no states")
+    expect(context in (0, v), f"context tables have {context} classes, the model {v}")
     computed = len(model.protrusion)
-    _expect(computed in (0, VALUES), f"protrusion has {computed} values, not {VALUES}")
-    _expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
+    expect(computed in (0, VALUES), f"protrusion has {computed} values, not {VALUES}")
+    expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
     return {
         "viseme_class": (p,),
         "boundary": (p,),
@@ -217,7 +212,7 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
 def _check_values(name: str, value: np.ndarray) -> None:
     """Raises ModelError, which names the array and the first index, for a value beyond the bounds of `name`."""
     kinds = "biu" if name in _WHOLE else "biuf"
-    _expect(value.dtype.kind in kinds, f"{name} has the type {value.dtype}")
+    expect(value.dtype.kind in kinds, f"{name} has the type {value.dtype}")
     low, high = _BOUNDS[name]
     wrong = ~((value >= low) & (value <= high))
     if name in _MAY_BE_NONE:
@@ -240,7 +235,7 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
     path = model_file(path)
     try:
         members = read_zip(path, None, limits.MODEL)
-        _expect("model.json" in members, "not a labial model: it holds no model.json")
+        expect("model.json" in members, "not a labial model: it holds no model.json")
         members = {**{name: members[former] for former, name in _NAMES_SINCE.items() if former in members}, **members}
         values = _texts(members["model.json"])
         for item in fields(Model):
@@ -248,7 +243,7 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
                 member = f"{item.name}.npy"
                 if item.name in _OPTIONAL and member not in members:
                     continue
-                _expect(member in members, f"not a labial model: it holds no {member}")
+                expect(member in members, f"not a labial model: it holds no {member}")
                 values[item.name] = array(item.name, members[member])
         if "source" not in values and len(values.get("protrusion", ())):  # before format 5
             values["source"] = np.where(every() == FAP_17, FROM_CORNERS, every())
@@ -269,22 +264,22 @@ def _texts(data: bytes) -> Dict[str, Any]:
     except (ValueError, RecursionError) as error:
         problem = "nested too deeply" if isinstance(error, RecursionError) else str(error)
         raise ModelError(f"model.json: not JSON ({problem[:80]})") from None
-    _expect(isinstance(text, dict), "model.json: not an object")
-    _expect(text.get("format") in _FORMATS, f"format {text.get('format')!r:.40}, but this version of labial reads "
+    expect(isinstance(text, dict), "model.json: not an object")
+    expect(text.get("format") in _FORMATS, f"format {text.get('format')!r:.40}, but this version of labial reads "
             f"formats {_FORMATS[0]} to {FORMAT}")
     for name in _TEXT:
-        _expect(name in text, f"model.json: no {name}")
+        expect(name in text, f"model.json: no {name}")
     for name in ("kind", "method", "silence", "attribution"):
-        _expect(isinstance(text[name], str), f"model.json: {name} is not text")
+        expect(isinstance(text[name], str), f"model.json: {name} is not text")
     for name in ("phonemes", "classes"):
-        _expect(isinstance(text[name], list) and all(isinstance(label, str) for label in text[name]),
+        expect(isinstance(text[name], list) and all(isinstance(label, str) for label in text[name]),
                 f"model.json: {name} is not a list of texts")
     for name in ("fps", "search_stride"):
-        _expect(type(text[name]) is int, f"model.json: {name} is not a whole number")
-    _expect(isinstance(text["soft"], bool), "model.json: soft is neither true nor false")
+        expect(type(text[name]) is int, f"model.json: {name} is not a whole number")
+    expect(isinstance(text["soft"], bool), "model.json: soft is neither true nor false")
     for name in ("aliases", "substitutes"):
-        _expect(isinstance(text[name], dict) and all(isinstance(label, str) for label in text[name].values()),
+        expect(isinstance(text[name], dict) and all(isinstance(label, str) for label in text[name].values()),
                 f"model.json: {name} is not an object of texts")
-    _expect(isinstance(text["training"], dict), "model.json: training is not an object")
+    expect(isinstance(text["training"], dict), "model.json: training is not an object")
     values = {name: text[name] for name in _TEXT}
     return {**values, "phonemes": tuple(text["phonemes"]), "classes": tuple(text["classes"])}

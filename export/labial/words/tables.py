@@ -10,7 +10,7 @@ from typing import Any, Dict, List, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.errors import ModelError
+from labial.errors import ModelError, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.outputs import writing
@@ -64,37 +64,32 @@ class WordTables:
         return int((self.question < 0).sum())
 
 
-def _expect(condition: bool, message: str) -> None:
-    if not condition:
-        raise ModelError(message)
-
-
 def _check(tables: WordTables) -> None:
     """Raises ModelError unless every number is in range, every node's successors follow it within its tree, and
     exceptions name letters of their words."""
     labels, nodes = len(tables.sounds), len(tables.question)
-    _expect(1 <= labels <= LABELS_MOST and tables.sounds[0] == 0, f"there are {labels} labels, not 1 to {LABELS_MOST}")
+    expect(1 <= labels <= LABELS_MOST and tables.sounds[0] == 0, f"there are {labels} labels, not 1 to {LABELS_MOST}")
     valid = all(0 <= sound < SOUNDS and (not sound or 0 not in phonemes_of(sound)) for sound in tables.sounds)
-    _expect(valid and len(set(tables.sounds)) == labels, "a label's sound does not exist or is there twice")
+    expect(valid and len(set(tables.sounds)) == labels, "a label's sound does not exist or is there twice")
     columns = (tables.yes, tables.no, tables.label)
-    _expect(all(column.shape == (nodes,) for column in (tables.question, *columns)), "the trees' columns differ")
+    expect(all(column.shape == (nodes,) for column in (tables.question, *columns)), "the trees' columns differ")
     first = tables.first
-    _expect(first.shape == (len(LETTERS),) and first[0] == 0 and first[-1] == nodes
+    expect(first.shape == (len(LETTERS),) and first[0] == 0 and first[-1] == nodes
             and bool((np.diff(first) > 0).all()), "the trees' roots are out of order")
-    _expect(bool(((tables.question >= -1) & (tables.question < QUESTIONS)).all()), "a question does not exist")
-    _expect(bool(((tables.label >= 0) & (tables.label < labels)).all()), "a node's label does not exist")
-    _expect(0 < tables.multiplier < 1 << 32 and tables.multiplier % 2 == 1, "the multiplier is not an odd number")
+    expect(bool(((tables.question >= -1) & (tables.question < QUESTIONS)).all()), "a question does not exist")
+    expect(bool(((tables.label >= 0) & (tables.label < labels)).all()), "a node's label does not exist")
+    expect(0 < tables.multiplier < 1 << 32 and tables.multiplier % 2 == 1, "the multiplier is not an odd number")
     here = np.arange(nodes) - np.repeat(first[:-1], np.diff(first))
     size = np.repeat(np.diff(first), np.diff(first))
     inner = tables.question >= 0
     for column in columns[:2]:
-        _expect(bool(((column > here) & (column < size))[inner].all()), "a node does not follow the one above it")
+        expect(bool(((column > here) & (column < size))[inner].all()), "a node does not follow the one above it")
     _check_shape(tables)
     for word, patches in tables.exceptions.items():
         known = word and len(word) <= LONGEST and all(character in LETTERS[1:] for character in word)
-        _expect(bool(known), f"the exception {word!r:.40} is not a word of a to z and apostrophes")
+        expect(bool(known), f"the exception {word!r:.40} is not a word of a to z and apostrophes")
         places = [place for place, _ in patches]
-        _expect(bool(places) and places == sorted(set(places)) and 0 <= places[0] and places[-1] < len(word)
+        expect(bool(places) and places == sorted(set(places)) and 0 <= places[0] and places[-1] < len(word)
                 and all(0 <= label < labels for _, label in patches), f"the exception {word!r} is out of range")
 
 
@@ -108,9 +103,9 @@ def _check_shape(tables: WordTables) -> None:
             if question[node] < 0:
                 continue
             for below in (yes[node], no[node]):
-                _expect(depth[below] < 0 <= depth[node] < _DEEPEST, "a tree's node is below two others, or too deep")
+                expect(depth[below] < 0 <= depth[node] < _DEEPEST, "a tree's node is below two others, or too deep")
                 depth[below] = depth[node] + 1
-        _expect(min(depth) >= 0, "a node belongs to no tree")
+        expect(min(depth) >= 0, "a node belongs to no tree")
 
 
 def is_tables(path: PathLike) -> bool:
@@ -153,7 +148,7 @@ def _load(path: PathLike) -> WordTables:
     try:
         found = read_zip(path, [f"{name}.npy" for name in names], limits.WORDS)
         missing = [name for name in names if f"{name}.npy" not in found]
-        _expect(not missing, f"not tables of words: no array {', '.join(missing)}")
+        expect(not missing, f"not tables of words: no array {', '.join(missing)}")
         content = {name: array(name, found[f"{name}.npy"]) for name in names}
         about = json.loads(content["about"].astype(np.uint8).tobytes().decode("utf-8"))
         words = content["words"].astype(np.uint8).tobytes().decode("ascii").split("\n")
@@ -162,15 +157,15 @@ def _load(path: PathLike) -> WordTables:
     except (ArrayError, ValueError, RecursionError) as error:
         raise ModelError(str(error)) from None
     numbers = {name: content[name].astype(np.int64) for name in _ARRAYS}
-    _expect(all(column.ndim == 1 for column in numbers.values()), "an array has more than one axis")
-    _expect(numbers["format"].tolist() == [FORMAT], f"not format {FORMAT} of tables of words: train them again")
-    _expect(isinstance(about, dict) and isinstance(about.get("attribution"), str)
+    expect(all(column.ndim == 1 for column in numbers.values()), "an array has more than one axis")
+    expect(numbers["format"].tolist() == [FORMAT], f"not format {FORMAT} of tables of words: train them again")
+    expect(isinstance(about, dict) and isinstance(about.get("attribution"), str)
             and isinstance(about.get("training"), dict), "what it says of itself is damaged")
-    _expect(len(numbers["multiplier"]) == 1, "there is not one multiplier")
+    expect(len(numbers["multiplier"]) == 1, "there is not one multiplier")
     counts = numbers["patch_count"]
     words = words if words != [""] else []
     total = int(counts.sum())
-    _expect(len(set(words)) == len(words) == len(counts) and bool((counts >= 0).all())
+    expect(len(set(words)) == len(words) == len(counts) and bool((counts >= 0).all())
             and total == len(numbers["patch_letter"]) == len(numbers["patch_label"]), "exceptions and patches differ")
     pairs = list(zip(numbers["patch_letter"].tolist(), numbers["patch_label"].tolist()))
     ends = np.cumsum(counts).tolist()
