@@ -29,7 +29,7 @@ _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*$")
 #: Least number that may convert units.
 _FACTOR_MIN = 10
 _CONDITIONS = (ast.If, ast.While, ast.IfExp)
-#: Functions whose two arguments are alike.
+#: Functions whose result does not depend on the order of their arguments.
 SYMMETRIC = ("min", "max", "minimum", "maximum")
 
 
