@@ -328,7 +328,7 @@ class Runner:
                     problems.append(f"status {child.returncode}")
                 problems += [f"left running: {process}" for process in end_session(child.pid, GRACE)]
             except subprocess.TimeoutExpired:
-                problems.append(f"not done after {LONGEST:.0f} s")
+                problems.append(f"not done after {LONGEST:g} s")
                 end_session(child.pid, 0.0)
                 child.wait()
             if problems:

@@ -41,7 +41,7 @@ def frames() -> Frames:
     return read_frames((HERE / "frames.txt").read_text(encoding="ascii"))
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, 4))])
 def test_committed_frames_follow_the_reference(
     models: Dict[str, ExportedModel], scripts: List[Script], frames: Frames, part: int
 ) -> None:

@@ -236,6 +236,7 @@ def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
     return lines
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
