@@ -37,8 +37,7 @@ static int voice_status(const labial_voice_t *voice)
 /* When the next frame is due, milliseconds. */
 static int64_t voice_now(const labial_voice_t *voice)
 {
-    const uint32_t rate = voice->model->frames_per_second, seconds = labial_quotient(voice->next, rate);
-    return (int64_t)seconds * 1000 + labial_quotient((voice->next - seconds * rate) * 1000u, rate);
+    return labial_voice_moment(voice, voice->next);
 }
 
 /* ---- Utterances -------------------------------------------------------------------------------------------------- */

@@ -9,6 +9,9 @@
 
 #define GIVEN_MOST LABIAL_VOICE_GIVEN_
 
+/* Milliseconds in which the face eases to rest behind the last item, so that it is there after LABIAL_VOICE_REST. */
+#define REST_EASING 300u
+
 /* ---- The stream -------------------------------------------------------------------------------------------------- */
 
 static void on_voice_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -79,6 +82,8 @@ static int give_segment(labial_voice_t *voice)
         note_given(voice, &segment);
         voice->given_phoneme = segment.phoneme;
         voice->left = segment.end == INT64_MAX ? UINT64_MAX : (uint64_t)(segment.end - segment.start);
+        if (segment.end == INT64_MAX)
+            voice->tail = segment.start;
     }
     if (voice->left < milliseconds)
         milliseconds = (uint32_t)voice->left;
@@ -87,8 +92,31 @@ static int give_segment(labial_voice_t *voice)
     return labial_push(&voice->stream, voice->given_phoneme, milliseconds);
 }
 
-/* Makes the next frame of the stream, in `made`; that of the neutral face without a stream. */
-static void make_frame(labial_voice_t *voice)
+/* What is left of a smooth transition at `step` of `steps`, Q14. */
+static int32_t left_at(uint32_t step, uint32_t steps)
+{
+    const int32_t left = 16384 - labial_ease(step, steps);
+    LABIAL_CHECK(left >= 0 && left <= 16384); /* a progress is 0 .. 1 in Q14 */
+    /*@ assert 0 <= left <= 16384; */
+    return left;
+}
+
+/* Eases the frame that was made to the neutral face, where nothing is known to follow: the silence of a model is the
+ * pose of its talkers between sentences, which is near it. */
+static void rest_behind(labial_voice_t *voice, uint32_t frame)
+{
+    const int64_t moment = labial_voice_moment(voice, frame) - (LABIAL_VOICE_REST - REST_EASING);
+    int32_t left;
+    unsigned k;
+    if (moment <= voice->tail)
+        return;
+    left = moment < voice->tail + REST_EASING ? left_at((uint32_t)(moment - voice->tail), REST_EASING) : 0;
+    for (k = 0; k < LABIAL_CHANNELS; k++)
+        voice->made[k] = (int16_t)((voice->made[k] * left + 8192) >> 14);
+}
+
+/* Makes this frame, the next one of the stream, in `made`; that of the neutral face without a stream. */
+static void make_frame(labial_voice_t *voice, uint32_t frame)
 {
     unsigned ahead = LABIAL_DELAY((unsigned)voice->model->search_stride);
     voice->moved = !voice->streaming;
@@ -103,6 +131,8 @@ static void make_frame(labial_voice_t *voice)
         if (give_segment(voice) != LABIAL_OK)
             return;
     }
+    if (voice->streaming)
+        rest_behind(voice, frame);
 }
 
 /* A new stream, which is given the plan from a whole second on; the difference from what was shown fades. */
@@ -114,11 +144,12 @@ static void renew_stream(labial_voice_t *voice, uint32_t second)
     labial_voice_plan_start(voice, (int64_t)second * 1000);
     voice->streaming = 1;
     voice->left = 0;
+    voice->tail = INT64_MAX;
     voice->from = (int64_t)second * 1000;
     voice->given_first = voice->given_count = 0;
     memset(voice->made, 0, sizeof voice->made);
     for (; frame < voice->next; frame++)
-        make_frame(voice);
+        make_frame(voice, frame);
     labial_voice_begin_fade(voice, LABIAL_VOICE_FADE);
 }
 
@@ -155,9 +186,7 @@ static void show_frame(labial_voice_t *voice)
     unsigned k;
     if (voice->step < voice->steps) {
         voice->step++;
-        left = 16384 - labial_ease(voice->step, voice->steps);
-        LABIAL_CHECK(left >= 0 && left <= 16384); /* a progress is 0 .. 1 in Q14 */
-        /*@ assert 0 <= left <= 16384; */
+        left = left_at(voice->step, voice->steps);
     }
     for (k = 0; k < LABIAL_CHANNELS; k++)
         voice->shown[k] = (int16_t)labial_clamp(voice->made[k] + ((voice->fade[k] * left + 8192) >> 14), INT16_MAX);
@@ -205,7 +234,7 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
         voice->next = due;
     if (voice->changed || is_late)
         follow_changes(voice, is_late);
-    make_frame(voice);
+    make_frame(voice, voice->next);
     show_frame(voice);
     if (frame)
         *frame = voice->next;

@@ -12,6 +12,8 @@
 
 #include "labial/voice.h"
 
+#include "fixed.h"
+
 typedef struct labial_voice_place labial_voice_place_t;
 typedef struct labial_voice_utterance labial_voice_utterance_t;
 typedef struct labial_voice_segment labial_voice_segment_t;
@@ -24,6 +26,13 @@ typedef struct labial_voice_plan labial_voice_plan_t;
  * characters, among which a [tag] may begin, and others. */
 #define LABIAL_VOICE_BACK 100u
 #define LABIAL_VOICE_BACK_FEW 2u
+
+/* When a frame is due, milliseconds of the sound. */
+static inline int64_t labial_voice_moment(const labial_voice_t *voice, uint32_t frame)
+{
+    const uint32_t rate = voice->model->frames_per_second, seconds = labial_quotient(frame, rate);
+    return (int64_t)seconds * 1000 + labial_quotient((frame - seconds * rate) * 1000u, rate);
+}
 
 /* ---- Items: a place is told by its index; those of an utterance lie one after the other -------------------------- */
 

@@ -29,7 +29,8 @@
  * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
  *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
  *   kind (labial_voice_kind_t) count.
- * - Nothing known is silence. An utterance ends where the next one begins.
+ * - Nothing known is silence; behind all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
+ *   where the next one begins.
  *
  * Items that make no sense are skipped and counted: those that end before they begin, last more than an hour, begin or
  * end more than a day after their utterance's beginning, or name a phoneme or viseme that there is not.
@@ -326,6 +327,7 @@ struct labial_voice {
     uint32_t step, steps;
     int32_t offset;                      /* milliseconds */
     uint64_t left;                       /* milliseconds of the last segment that the stream was not given yet */
+    int64_t tail;                        /* when the silence without an end begins; INT64_MAX before it is given */
     int64_t from;                        /* when the first segment of `given` begins */
     uint32_t given[LABIAL_VOICE_GIVEN_]; /* that the stream has, a ring: milliseconds, 0 without an end */
     uint8_t phonemes[LABIAL_VOICE_GIVEN_];

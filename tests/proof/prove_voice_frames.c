@@ -97,6 +97,7 @@ static void any_state(void)
     voice.step = (uint32_t)Frama_C_interval(0, LABIAL_CANCEL_MAX);
     voice.steps = (uint32_t)Frama_C_interval(0, LABIAL_CANCEL_MAX);
     voice.left = (uint64_t)any_uint32 << 32 | any_uint32;
+    voice.tail = any_moment();
     voice.from = (int64_t)any_uint32 * 8;
     FILL(voice.given);
     FILL(voice.phonemes);

@@ -18,7 +18,7 @@ import pytest
 
 import labial
 from labial.core.words import OwnWords
-from oracle import times
+from oracle import Plan, rested, times
 from regenerate_voices import SOUNDS, WORDS
 from runtime import needs_runtime
 from services import SAMPLES
@@ -31,11 +31,13 @@ def played(voice: labial.Voice, first: float, last: float) -> List[Tuple[int, ..
 
 
 def motion(timings: Iterable[Tuple[str, float]], count: int) -> List[Tuple[int, ...]]:
-    """The first frames of timings, with silence after them."""
-    with labial.Stream() as stream:
-        for label, length in [*timings, ("SIL", 3_600_000)]:
-            stream.push(label, length)
-        return [next(stream).faps for _ in range(count)]
+    """The first frames of timings, and of the silence after them, in which the face comes to rest."""
+    plan: Plan = []
+    end = 0.0
+    for label, length in timings:
+        plan.append((int(end), end + length, label))
+        end += length
+    return [rested([*plan, (int(end), math.inf, "SIL")], number, 0) for number in range(count)]
 
 
 def said(words: Sequence[Tuple[str, float, float]]) -> List[Tuple[str, int]]:

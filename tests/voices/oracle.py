@@ -23,6 +23,8 @@ ENDLESS = 3_600_000
 #: Frames of it that a session may see.
 SILENT = 1000
 FADE = 8
+#: Milliseconds from the end of all that is known until the face begins to ease to rest, and until it is there.
+STILL, REST = 200, 500
 
 Plan = List[Tuple[int, float, str]]
 Faps = Tuple[int, ...]
@@ -178,12 +180,11 @@ class Oracle:
             self.change(late)
         found = []
         while self.next <= due:
-            base = (0,) * 13 if self.neutral else frame(self.plan, self.next - self.epoch // 20)
+            base = (0,) * 13 if self.neutral else rested(self.plan, self.next, self.epoch)
             offset, step, steps = self.fade
             if step < steps:
                 step += 1
-                share = (step << 14) // steps
-                left = 16384 - (((share * share >> 14) * (49152 - 2 * share)) >> 14)
+                left = 16384 - eased(step, steps)
                 base = tuple(one + ((more * left + 8192) >> 14) for one, more in zip(base, offset))
                 self.fade = (offset, step, steps)
             found.append(Shown(self.next, base))
@@ -206,7 +207,7 @@ class Oracle:
                 return
         self.epoch, self.plan, self.neutral = start, plan, False
         if self.shown is not None:
-            before = frame(plan, self.next - 1 - start // 20)
+            before = rested(plan, self.next - 1, start)
             self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE)
 
 
@@ -225,6 +226,20 @@ def _timings(plan: Plan) -> List[Tuple[str, float]]:
 def frame(plan: Plan, number: int) -> Faps:
     """A frame of the motion of a plan."""
     return _motion(tuple(plan))[number]
+
+
+def eased(step: int, steps: int) -> int:
+    """3 s^2 - 2 s^3 of 2^14, at a step of so many."""
+    share = (step << 14) // steps
+    return ((share * share >> 14) * (49152 - 2 * share)) >> 14
+
+
+def rested(plan: Plan, number: int, epoch: int) -> Faps:
+    """A frame of the motion of a plan that begins at `epoch`, on its way to rest where nothing follows."""
+    made = frame(plan, number - epoch // 20)
+    passed = min(max(0, number * 20 - int(plan[-1][0]) - STILL), REST - STILL)
+    left = 16384 - eased(passed, REST - STILL)
+    return tuple((fap * left + 8192) >> 14 for fap in made)
 
 
 @functools.lru_cache(maxsize=4)
