@@ -14,33 +14,34 @@ static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
 static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
-/* Abbreviations by their first letter, each with what it stands for. */
+/* Abbreviations, and words that the trees would misread, by their first letter; each with what is said. */
 static const char *const meanings[] = {
     "approx\0approximately\0ave\0avenue\0ascii\0askey\0",
-    "blvd\0boulevard\0",
+    "blvd\0boulevard\0btw\0bee tee double you\0",
     "capt\0captain\0cmos\0sea moss\0",
     "dr\0doctor\0dept\0department\0",
-    "etc\0etcetera\0edu\0ee dee you\0",
-    "fi\0fie\0ftp\0eff tee pee\0",
+    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0",
+    "fi\0fie\0ftp\0eff tee pee\0fyi\0eff why eye\0",
     "govt\0government\0gnu\0new\0",
-    "http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0",
-    "ii\0two\0iii\0three\0",
+    "http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0"
+    "haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0",
+    "ii\0two\0iii\0three\0idk\0eye dee kay\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "",
-    "ltd\0limited\0lt\0lieutenant\0",
+    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0",
     "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0",
-    "",
-    "",
-    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0",
+    "nato\0nay toe\0",
+    "ok\0oh kay\0omg\0oh em gee\0",
+    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0pls\0please\0plz\0please\0",
     "",
     "rd\0road\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0",
-    "",
-    "",
+    "tbh\0tee bee aitch\0thx\0thanks\0",
+    "ugh\0ug\0uber\0oober\0",
     "vs\0versus\0vol\0volume\0vii\0seven\0viii\0eight\0",
-    "wi\0why\0wifi\0why fie\0www\0double you double you double you\0",
+    "wi\0why\0wifi\0why fie\0www\0double you double you double you\0whoa\0woe\0",
     "xii\0twelve\0xiv\0fourteen\0",
-    "yaml\0yamel\0",
+    "yaml\0yamel\0yuck\0yuk\0",
     "",
 };
 

@@ -39,7 +39,7 @@ $1,250 $1234567890123456 $5-$10 $5million 5km 1km 5kmx 100km/h 16GB 5M 2bn 6in 1
 FBI NBA CIA VIP PhD PhDs TVs FBI's FBIs CEO's NASA's USAs STOP WHO IRS SUV NYPD HELLO X's A's As As' H's DVDs AT&T
 Q&A A+ A-1 B2B MP3 YMCA UNESCO ESPN JPEG json Wi-Fi WiFi Jan. Sept Tues. Mar approx. www.example.com x@b.io .com
 https://a.org/b-c_d node.js a.b.c end.Start wait...what (sighs) (pause) (pauses) (yes) *smiles* *leans *really*
-**bold** [a]b (laughing)x *x
+**bold** [a]b (laughing)x *x ok Ok OK omg IDK btw fyi TBH pls plz thx NATO uber haha Hahaha hehe ugh Whoa eww yuck lemme
 abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaab
 Pneumonoultramicroscopicsilicovolcanoconiosis bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb'b don't-can't-won't
 """.split()

@@ -30,7 +30,9 @@ blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain
 wi why;fi fie;wifi why fie;ph pee aitch;phd pee aitch dee;www double_you double_you double_you
 http aitch tee tee pee;https aitch tee tee pee ess;ftp eff tee pee;edu ee dee you;ascii askey;jpeg jay peg
 jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
-ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen"""
+ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok oh kay;omg oh em gee;idk eye dee kay
+btw bee tee double_you;fyi eff why eye;tbh tee bee aitch;pls please;plz please;thx thanks;nato nay toe;uber oober
+haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
 _DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
                   "January February March April June July August September September October November December Monday "
