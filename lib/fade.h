@@ -10,6 +10,8 @@
 
 #include "labial/labial.h"
 
+#include "fixed.h"
+
 /* Steps of a way to motion that begins anew: the motion itself is reached with the last one. */
 #define LABIAL_FADE_STEPS 9u
 
@@ -27,6 +29,14 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
 
 /* The pose that was delivered last stays where it is: no way leads on. */
 void labial_fade_stand(labial_fade_t *fade);
+
+/* What is left of `whole` on the way, in even steps; 0 at its end, and without one. */
+static inline uint32_t labial_fade_left(const labial_fade_t *fade, uint32_t whole)
+{
+    if (fade->step == 0 || fade->step >= fade->length)
+        return 0;
+    return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
+}
 
 /* Whether the pose that was delivered last is at rest. */
 int labial_fade_rests(const labial_fade_t *fade);

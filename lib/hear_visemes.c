@@ -2,6 +2,7 @@
  * hear_visemes.c - the sounds that a frame of hearing shows (labial_hear_visemes()): those of the classes that lead in it
  * and beside it. hearing/integer.py computes the same integers.
  */
+#include "fade.h"
 #include "fixed.h"
 #include "hear_motion.h"
 #include "labial/hear.h"
@@ -9,16 +10,11 @@
 /* How much of the sound of the last frame the face shows. */
 static uint32_t sound_shown(const labial_hear_t *hear)
 {
-    const labial_fade_t *fade = &hear->fade;
     uint32_t whole;
     if (hear->told == LABIAL_HEAR_NOTHING_)
         return 0;
     whole = (uint32_t)(labial_hear_motion_share(&hear->motion) * LABIAL_VISEME_ONE) >> 14;
-    if (hear->told == LABIAL_HEAR_SOUND_)
-        return whole;
-    if (fade->step == 0 || fade->step >= fade->length)
-        return 0;
-    return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
+    return hear->told == LABIAL_HEAR_SOUND_ ? whole : labial_fade_left(&hear->fade, whole);
 }
 
 /* Adds a class of this viseme to the parts of the sounds; what is no viseme is silence. */

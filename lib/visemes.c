@@ -4,6 +4,7 @@
  */
 #include "labial/visemes.h"
 
+#include "fade.h"
 #include "fixed.h"
 
 /* How far around the delivered frame a sound can count: no onset or release below lasts longer. */
@@ -71,12 +72,9 @@ static void share_out(const uint16_t dominance[LABIAL_VISEMES], uint32_t whole, 
 /* The part of the frame's sound that the face still shows: all of it in motion, less on the way to rest. */
 static uint32_t shown(const labial_t *stream)
 {
-    const labial_fade_t *fade = &stream->fade;
     if (!stream->resting)
         return stream->begun ? LABIAL_VISEME_ONE : 0u;
-    if (fade->step == 0 || fade->step >= fade->length)
-        return 0;
-    return labial_quotient(((uint32_t)fade->length - fade->step) * LABIAL_VISEME_ONE, (uint32_t)fade->length);
+    return labial_fade_left(&stream->fade, LABIAL_VISEME_ONE);
 }
 
 /* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's phoneme
