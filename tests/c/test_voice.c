@@ -364,6 +364,27 @@ TEST_AFTER(begin, pronunciations_are_the_callers)
     assert_non_null(strstr(known(), "S, "));
 }
 
+/* How often words are read that are told one by one, each before a frame, far ahead of the sound. */
+static unsigned reads(unsigned words)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    begin_with(PLACES);
+    assert_int_equal(labial_voice_pronounce(&voice, ask, &asked), LABIAL_OK);
+    asked = 0;
+    for (unsigned i = 0; i < words; i++) {
+        assert_int_equal(labial_voice_word(&voice, "people", 6, 400 * i, 400 * i + 350), LABIAL_OK);
+        assert_int_equal(labial_voice_next(&voice, 20 * i, NULL, faps), LABIAL_OK);
+    }
+    return asked;
+}
+
+TEST_AFTER(begin, work_is_linear_in_what_is_told)
+{
+    const unsigned few = reads(PLACES / 8);
+    assert_in_range(few, 3, PLACES / 8); /* of most the sound is not near yet */
+    assert_true(reads(PLACES / 4) <= 2 * few + 8);
+}
+
 /* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
 static uint32_t name(const char *text)

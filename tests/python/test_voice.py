@@ -11,7 +11,6 @@ import math
 import random
 import subprocess
 import sys
-import time
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import pytest
@@ -419,20 +418,6 @@ def test_rounding_shifts_nothing(start_digits: int) -> None:
         distances = [abs(one - other) for frame in pairs for one, other in frame]
         largest = max(abs(value) for frame in pairs for pair in frame for value in pair)
         assert sum(distances) / len(distances) < 0.02 * largest, "the mouth is somewhere else"
-
-
-def test_work_is_linear_in_what_is_told() -> None:
-    """Twice as many words, ahead of the sound or by and by, take at most three times as long."""
-    def seconds(count: int) -> float:
-        begin = time.process_time()
-        with labial.Voice() as voice:
-            for k in range(count):
-                voice.say("people", 0.4 * k, 0.4 * k + 0.35)
-                voice.played(0.02 * k)
-        return time.process_time() - begin
-
-    few = min(seconds(1000) for _ in range(3))
-    assert min(seconds(2000) for _ in range(3)) < 3 * few
 
 
 def test_pronunciations_and_labels() -> None:
