@@ -29,22 +29,24 @@ void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
 
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
+    static const int16_t neutral[LABIAL_CHANNELS] = { 0 };
     const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
     int32_t share;
     unsigned k;
+    if (!motion)
+        motion = neutral;
     if (step == 0 || step >= fade->length) { /* not on a way, or at its end */
         for (k = 0; k < LABIAL_CHANNELS; k++) {
             fade->earlier[k] = fade->pose[k];
-            fade->pose[k] = (int16_t)(motion ? motion[k] : 0);
+            fade->pose[k] = motion[k];
         }
         fade->step = 0;
         return;
     }
     share = labial_ease(step, fade->length);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
-        const int32_t aim = motion ? motion[k] : 0;
         const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
-        fade->pose[k] = (int16_t)labial_clamp(from + (((aim - from) * share + 8192) >> 14), INT16_MAX);
+        fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * share + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);
 }

@@ -311,19 +311,21 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
                              int16_t target[LABIAL_CHANNELS])
 {
     const uint32_t *words[LABIAL_KERNEL_TAPS_MAX]; /* of each tap's phoneme */
+    int16_t sums[4u * LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)];
+    const labial_channel_t *const channels = model->channels;
     const int32_t share = taken->share;
-    const unsigned width = model->channel_count, groups = LABIAL_KERNEL_WORDS(width);
-    unsigned group, i, k = 0;
+    const unsigned width = model->channel_count;
+    unsigned group, k;
     find_taps(model, taken->labels, words);
-    for (group = 0; group < groups; group++) {
-        int16_t sums[4];
-        add_taps(words, model->kernel_taps, group, sums);
-        for (i = 0; i < 4u && k < width; i++, k++) {
-            const int32_t start = shape[k].knots[0];
-            const int32_t position = start + (((shape[k].knots[1] - start) * share + 8192) >> 14) +
-                                     labial_scaled(sums[i], model->channels[k].kernel_scale);
-            target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
-        }
+    /*@ split width; */
+    for (group = 0; group < LABIAL_KERNEL_WORDS(width); group++)
+        add_taps(words, model->kernel_taps, group, sums + 4u * group);
+    for (k = 0; k < width; k++) {
+        const int32_t start = shape[k].knots[0];
+        const int32_t position = start + (((shape[k].knots[1] - start) * share + 8192) >> 14) +
+                                 labial_scaled(sums[k], channels[k].kernel_scale);
+        target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
     }
+    /*@ merge width; */
     return (uint16_t)(model->floor_count ? touch(model, taken, target) : 0u);
 }

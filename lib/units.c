@@ -128,28 +128,40 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     return from < head || i + 1u < units->count || ended;
 }
 
-/* Moves the labels by a frame and writes those of the frame itself and of the `ahead` frames after it; silence after
- * the end of the solution. */
+/* The label of the frame behind those that have one, the last of which is `before`; silence after the end of the
+ * solution. */
+static uint8_t next_label(labial_units_t *units, unsigned slot, uint8_t silence, uint8_t before)
+{
+    const labial_segment_t *segment;
+    if (units->unlabelled > 0) {
+        units->unlabelled--;
+        return before;
+    }
+    if (units->labelled >= units->count)
+        return silence;
+    segment = segment_at(units, units->labelled);
+    if (segment->slot != slot)
+        return silence;
+    units->labelled++;
+    units->unlabelled = segment->frames - 1u;
+    return segment->phoneme;
+}
+
+/* Moves the labels by a frame, to those of the frame itself and of the `ahead` frames after it. */
 static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsigned ahead)
 {
-    uint8_t *label = units->labels + LABIAL_REACH, *const last = label + ahead;
-    uint32_t left = segment_at(units, 0)->frames - units->taken;
-    unsigned i = 0;
-    if (units->begins)
+    uint8_t *const last = units->labels + LABIAL_REACH + ahead;
+    uint8_t *label = last, before = *last;
+    if (units->begins) {
         memset(units->labels, silence, sizeof units->labels);
-    else
-        memmove(units->labels, units->labels + 1, LABIAL_REACH);
-    for (; label <= last && i < units->count; i++) {
-        const labial_segment_t *segment = segment_at(units, i);
-        if (segment->slot != slot)
-            break;
-        if (i > 0)
-            left = segment->frames;
-        for (; left > 0 && label <= last; left--)
-            *label++ = segment->phoneme;
+        units->labelled = 0;
+        units->unlabelled = 0;
+        label = units->labels + LABIAL_REACH;
+    } else {
+        memmove(units->labels, units->labels + 1, LABIAL_REACH + ahead);
     }
-    while (label <= last)
-        *label++ = silence;
+    for (; label <= last; label++)
+        *label = before = next_label(units, slot, silence, before);
 }
 
 /* Whether frame `frame` of a phoneme of `frames` lies outside of its contact, which the middle half of its frames make,
@@ -193,6 +205,7 @@ static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, in
     units->taken = 0;
     units->head = (uint8_t)(units->head + 1u < LABIAL_QUEUE ? units->head + 1u : 0u);
     units->count--;
+    units->labelled--; /* it had labels: this frame's */
     return marks;
 }
 

@@ -22,12 +22,14 @@ typedef struct {
 /* The queue of phonemes that were pushed and whose frames are not all accepted yet (units.c). */
 typedef struct {
     uint8_t head, count;
-    uint8_t before;     /* phoneme in front of the oldest segment */
-    uint8_t begins;     /* the next frame is the first of a solution */
-    uint8_t rested;     /* the oldest segment is a pause that a solution began with */
-    uint16_t remainder; /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
-    uint32_t taken;     /* frames of the oldest segment that were accepted */
-    uint32_t frames;    /* of all segments, not yet accepted */
+    uint8_t before;      /* phoneme in front of the oldest segment */
+    uint8_t begins;      /* the next frame is the first of a solution */
+    uint8_t rested;      /* the oldest segment is a pause that a solution began with */
+    uint8_t labelled;    /* segments that have labels, the oldest ones */
+    uint16_t remainder;  /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
+    uint32_t taken;      /* frames of the oldest segment that were accepted */
+    uint32_t frames;     /* of all segments, not yet accepted */
+    uint32_t unlabelled; /* frames of the last segment that has labels */
     uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
