@@ -85,6 +85,7 @@ def test_without_text(tmp_path: Path) -> None:
     assert correlation(say(tmp_path / "a.lab"), true) >= 0.8
 
 
+@pytest.mark.slow
 def test_long_sounds_go_piece_by_piece(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Catches words that are lost, said twice or shifted where pieces meet."""
     parts = [speech("flite", tmp_path, text, str(number))[0] for number, text in enumerate(TEXTS)]
@@ -148,6 +149,7 @@ def test_what_is_no_speech_is_told(tmp_path: Path) -> None:
             assert found[0].start == 0 and found[-1].end == pytest.approx(len(read_sound(path)) / RATE)
 
 
+@pytest.mark.slow
 def test_text_of_another_sound(tmp_path: Path) -> None:
     sound, _ = speech("flite", tmp_path, TEXTS[0])
     for text in (TEXTS[2], "Hello."):
@@ -328,6 +330,7 @@ def test_confidence_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
     assert len(say(lab)) > 100
 
 
+@pytest.mark.slow
 def test_a_sentence_too_many_is_left_out(tmp_path: Path) -> None:
     """It failed the whole. What is there is aligned as without it."""
     path = spoken(tmp_path)

@@ -214,6 +214,7 @@ def test_numbers_that_c_has_too() -> None:
     assert re.search(r"^#define LABIAL_DURATION_MAX (\d+)u$", manual, re.MULTILINE)[1] == str(DURATION_MAX)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("avr-gcc"), reason="no avr-gcc: install gcc-avr and avr-libc")
 def test_avr_takes_what_fits(tmp_path: Path) -> None:
     """A track that no array of an AVR holds is refused in words; one of the largest size compiles, in flash."""

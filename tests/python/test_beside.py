@@ -549,6 +549,7 @@ def test_connections_do_not_wait_for_each_other(tmp_path: Path) -> None:
         assert len(sound) > 20 and max(after - before for before, after in zip(sound, sound[1:])) < 2.5
 
 
+@pytest.mark.slow
 @needs_flite
 def test_limits_of_a_server() -> None:
     """Catches connections and silent toys that are kept without end, lines that are, and an empty line that ends."""

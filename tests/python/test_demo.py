@@ -324,6 +324,7 @@ def in_step(seen: List[List[float]], fps: float) -> None:
     assert np.maximum(before - drawn, drawn - after).max() <= 1 / fps
 
 
+@pytest.mark.slow
 @needs_chromium
 def test_demo_plays_pauses_and_seeks_in_step(demo: Page) -> None:
     """Catches a sound that does not play, lips that run ahead or behind, and either going on or elsewhere alone."""
@@ -370,6 +371,7 @@ def page_of(folder: Path, sound: str) -> str:
     return out.as_uri()
 
 
+@pytest.mark.slow
 @needs_chromium
 @pytest.mark.parametrize("options", [
     {"format": "WAV", "subtype": "PCM_16"}, {"format": "WAV", "subtype": "FLOAT"}, {"format": "FLAC"},

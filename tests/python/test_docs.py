@@ -37,8 +37,8 @@ from test_see import wav
 
 PAGES = [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
 #: Pages that build packages or programs, simulate boards, train or draw.
-SLOW = ("README.md", "arduino.md", "browser.md", "install.md", "kiosk.md", "laughing.md", "packages.md", "porting.md",
-        "record.md", "see.md", "servos.md")
+SLOW = ("README.md", "arduino.md", "browser.md", "hearing.md", "install.md", "kiosk.md", "laughing.md", "packages.md",
+        "porting.md", "record.md", "see.md", "servos.md", "streams.md", "words.md")
 
 #: Lines of pages that are not run, and why.
 NOT_RUN: Dict[str, Dict[str, str]] = {

@@ -20,7 +20,8 @@ from packages import SOURCE
 
 SAY = os.environ.get("LABIAL_SAY", "")
 KIOSK = SOURCE / "examples" / "kiosk"
-pytestmark = [pytest.mark.skipif(not CHROMIUM, reason=REASON), pytest.mark.skipif(bool(MISSING), reason=MISSING)]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(not CHROMIUM, reason=REASON),
+              pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
 PERIOD = 0.02
 #: The line that is drawn between closed lips, in drawing units; lips that are nearer look closed.
@@ -250,7 +251,6 @@ def counters(page: Page) -> Dict[str, int]:
     return found
 
 
-@pytest.mark.slow
 def test_ten_minutes_take_no_memory(browser: Browser, address: str) -> None:
     """Ten minutes of speaking, laughing, stops and rest by a clock that the test turns, 20 drawings a second. Catches
     what a kiosk that runs for weeks would die of."""

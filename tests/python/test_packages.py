@@ -255,6 +255,7 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
     assert angles[wide[0]:wide[-1]].min() <= 82
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) -> None:
     """The sketch that ``labial rig --calibrate`` writes: moves one servo at a time, within what servos take, and prints

@@ -43,6 +43,7 @@ def build(folder: Path, lists: str, *options: str) -> str:
     return run(folder / "build" / "program")
 
 
+@pytest.mark.slow
 def test_find_package(installed: Path, tmp_path: Path) -> None:
     """The target brings headers, the library below the model and the limit that the library was built with."""
     find = f"find_package(labial {labial.__version__} REQUIRED COMPONENTS speech_en laughter_synthetic)\n"
