@@ -23,8 +23,8 @@ static const char *const meanings[] = {
     "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0",
     "fi\0fie\0ftp\0eff tee pee\0fyi\0eff why eye\0",
     "govt\0government\0gnu\0new\0",
-    "http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0"
-    "haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0",
+    ("http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0"
+     "haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0"),
     "ii\0two\0iii\0three\0idk\0eye dee kay\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "",

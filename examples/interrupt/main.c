@@ -85,7 +85,9 @@ void board_interrupt(unsigned number)
         SYST_CSR = 0;
 }
 
-/* Phoneme `i` of what is said, which lasts a frame, and how long after the one before it comes: each time differently. */
+/* Phoneme `i` of what is said, which lasts a frame, and how long after the one before it comes: each time differently,
+ * and as long as a frame on average, so that the queue is neither full nor empty and a push may meet the interrupt at
+ * any moment. */
 static unsigned phoneme_at(uint32_t i)
 {
     return (unsigned)(i * 7u % speech_en.phoneme_count);
@@ -93,7 +95,7 @@ static unsigned phoneme_at(uint32_t i)
 
 static void wait_for_phoneme(uint32_t i)
 {
-    volatile uint32_t turns = (i * 2654435761u >> 16) % (PERIOD / 8u);
+    volatile uint32_t turns = (i * 2654435761u >> 16) % (PERIOD / 4u);
     while (turns > 0)
         turns = turns - 1u;
 }
