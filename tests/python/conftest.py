@@ -23,6 +23,10 @@ sys.path += [str(ROOT / name) for name in
 TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter", "test_packages",
             "test_packages_cmake", "test_speak_page", "test_train", "test_wheel")  # fmt: skip
 
+#: Modules whose pages play sound in a browser, which a busy machine stops for a moment: each test has three tries.
+REAL_TIME = ("test_adapters", "test_browser_hearing", "test_browser_voice", "test_demo", "test_kiosk",
+             "test_speak_page")  # fmt: skip
+
 
 def pytest_configure(config: pytest.Config) -> None:
     """Declares the marker."""
@@ -40,12 +44,14 @@ def passed_modules(report: Path) -> Set[str]:
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist looks at the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
-    """Groups the tests of some modules (``--dist loadgroup``). Leaves the slow tests out, but where LABIAL_REQUIRE_ALL
-    is set in the environment; there LABIAL_PASSED may name the report of a run without them, whose passed modules are
-    left to it."""
+    """Groups the tests of some modules (``--dist loadgroup``), and gives those of others more tries. Leaves the slow
+    tests out, but where LABIAL_REQUIRE_ALL is set in the environment; there LABIAL_PASSED may name the report of a run
+    without them, whose passed modules are left to it."""
     for item in items:
         if item.path.stem in TOGETHER:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
+        if item.path.stem in REAL_TIME:
+            item.add_marker(pytest.mark.flaky(reruns=2))
     every = os.environ.get("LABIAL_REQUIRE_ALL", "").upper() in ("ON", "1", "TRUE", "YES")
     report = os.environ.get("LABIAL_PASSED", "")
     passed = passed_modules(Path(report)) if every and report else set()
