@@ -36,7 +36,7 @@ def motion(timings: Iterable[Tuple[str, float]], count: int) -> List[Tuple[int, 
     for label, length in timings:
         plan.append((int(end), end + length, label))
         end += length
-    return [rested([*plan, (int(end), math.inf, "SIL")], number, 0) for number in range(count)]
+    return [rested([*plan, (int(end), math.inf, "SIL")], number) for number in range(count)]
 
 
 def said(words: Sequence[Tuple[str, float, float]]) -> List[Tuple[str, int]]:

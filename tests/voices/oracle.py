@@ -180,7 +180,7 @@ class Oracle:
             self.change(late)
         found = []
         while self.next <= due:
-            base = (0,) * 13 if self.neutral else rested(self.plan, self.next, self.epoch)
+            base = (0,) * 13 if self.neutral else rested(self.plan, self.next)
             offset, step, steps = self.fade
             if step < steps:
                 step += 1
@@ -207,7 +207,7 @@ class Oracle:
                 return
         self.epoch, self.plan, self.neutral = start, plan, False
         if self.shown is not None:
-            before = rested(plan, self.next - 1, start)
+            before = rested(plan, self.next - 1)
             self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE)
 
 
@@ -234,9 +234,9 @@ def eased(step: int, steps: int) -> int:
     return ((share * share >> 14) * (49152 - 2 * share)) >> 14
 
 
-def rested(plan: Plan, number: int, epoch: int) -> Faps:
-    """A frame of the motion of a plan that begins at `epoch`, on its way to rest where nothing follows."""
-    made = frame(plan, number - epoch // 20)
+def rested(plan: Plan, number: int) -> Faps:
+    """A frame of a voice that follows a plan, which eases to rest after all that is known."""
+    made = frame(plan, number - plan[0][0] // 20)
     passed = min(max(0, number * 20 - int(plan[-1][0]) - STILL), REST - STILL)
     left = 16384 - eased(passed, REST - STILL)
     return tuple((fap * left + 8192) >> 14 for fap in made)
