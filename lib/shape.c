@@ -317,6 +317,7 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
     const unsigned width = model->channel_count;
     unsigned group, k;
     find_taps(model, taken->labels, words);
+    /* The prover looks at each width by itself, to see that all sums that are read were written. */
     /*@ split width; */
     for (group = 0; group < LABIAL_KERNEL_WORDS(width); group++)
         add_taps(words, model->kernel_taps, group, sums + 4u * group);

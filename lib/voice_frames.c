@@ -9,7 +9,7 @@
 
 #define GIVEN_MOST LABIAL_VOICE_GIVEN_
 
-/* Milliseconds in which the face eases to rest behind the last item, so that it is there after LABIAL_VOICE_REST. */
+/* How long the face takes to ease to rest, milliseconds; it is there LABIAL_VOICE_REST after the last item. */
 #define REST_EASING 300u
 
 /* ---- The stream -------------------------------------------------------------------------------------------------- */
@@ -101,8 +101,8 @@ static int32_t left_at(uint32_t step, uint32_t steps)
     return left;
 }
 
-/* Eases the frame that was made to the neutral face, where nothing is known to follow: the silence of a model is the
- * pose of its talkers between sentences, which is near it. */
+/* Eases the frame to the neutral face once nothing more is known: the silence of a model is the pose of its talkers
+ * between sentences, which is close to neutral, but not quite. */
 static void rest_behind(labial_voice_t *voice, uint32_t frame)
 {
     const int64_t moment = labial_voice_moment(voice, frame) - (LABIAL_VOICE_REST - REST_EASING);

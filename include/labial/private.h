@@ -29,7 +29,7 @@ typedef struct {
     uint16_t remainder;  /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
     uint32_t taken;      /* frames of the oldest segment that were accepted */
     uint32_t frames;     /* of all segments, not yet accepted */
-    uint32_t unlabelled; /* frames of the last segment that has labels */
+    uint32_t unlabelled; /* frames of the last of these that have no label yet */
     uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;

@@ -29,7 +29,7 @@
  * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
  *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
  *   kind (labial_voice_kind_t) count.
- * - Nothing known is silence; behind all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
+ * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
  *   where the next one begins.
  *
  * Items that make no sense are skipped and counted: those that end before they begin, last more than an hour, begin or

@@ -83,7 +83,7 @@ list(JOIN libraries ":" libraries)
 set(variables
   "PYTHONPATH=${PROJECT_SOURCE_DIR}/export"
   "PYTHONPYCACHEPREFIX=${PROJECT_BINARY_DIR}/pycache" # nothing compiled beside the sources
-  PYTHONDONTWRITEBYTECODE= # which some images set; each process would compile all that it imports
+  PYTHONDONTWRITEBYTECODE= # some images set it, and then each process compiles all that it imports
   "MPLCONFIGDIR=${PROJECT_BINARY_DIR}/matplotlib"
   OMP_NUM_THREADS=1 # the tests themselves run in parallel
   "LABIAL_SOURCE=${PROJECT_SOURCE_DIR}"
