@@ -73,32 +73,72 @@ static int read_date(labial_words_reading_t *reading)
     return 1;
 }
 
-/* Numbers of telephones: 555-1234, three groups and more, or the three digits of an area in parentheses. */
+/* Groups of digits with one separator between two of them, which are given as a list; `sizes` has a hexadecimal digit
+ * for each of the last eight groups. */
+typedef struct {
+    unsigned count, sizes, digits, largest;
+    unsigned first, smallest; /* size of the first one, and of the smallest behind it */
+} groups_t;
+
+static groups_t take_groups(labial_words_place_t *here, const char *separators)
+{
+    groups_t groups = { 0, 0, 0, 0, 0, MOST_DIGITS };
+    for (;;) {
+        const unsigned size = labial_words_take_digits(here).count;
+        groups.sizes = groups.sizes << 4 | (size < 15u ? size : 15u);
+        groups.digits += size;
+        if (size > groups.largest)
+            groups.largest = size;
+        if (groups.count++ == 0u)
+            groups.first = size;
+        else if (size < groups.smallest)
+            groups.smallest = size;
+        if (!labial_words_said_of(separators, here->code) || !labial_words_is_decimal(labial_words_following(here)))
+            return groups;
+        labial_words_advance(here);
+    }
+}
+
+/* How many groups belong to the number of a telephone that is here, or 0: +1 555 123 4567; 555-1234, three groups and
+ * more with hyphens, the three digits of an area in parentheses; 555.123.4567. */
+static unsigned phone_groups(const labial_words_place_t *here)
+{
+    labial_words_place_t next = *here;
+    const int is_area = here->code >= '2';
+    groups_t groups;
+    if (here->before == '+') {
+        groups = take_groups(&next, "-\0.\0 \0");
+        if (groups.digits >= 8u && groups.digits <= MOST_DIGITS && (groups.count == 1u || groups.first <= 3u) &&
+            !labial_words_is_inside(next.code))
+            return groups.count;
+        next = *here;
+    }
+    groups = take_groups(&next, "-\0");
+    if (groups.largest <= 4u && groups.smallest >= 2u && next.code != '-' && !labial_words_is_inside(next.code) &&
+        (groups.count > 2u || groups.sizes == 0x34u ||
+         (groups.sizes == 3u && is_area && next.code == ')' && here->before == '(')))
+        return groups.count;
+    next = *here;
+    groups = take_groups(&next, ".\0");
+    if (groups.count == 1u) {
+        next = *here;
+        groups = take_groups(&next, " \0");
+    }
+    return is_area && groups.sizes == 0x334u && !labial_words_is_inside(next.code) ? 3u : 0u;
+}
+
 static int read_phone(labial_words_reading_t *reading)
 {
-    labial_words_place_t next = reading->here;
-    const labial_words_number_t first = labial_words_take_digits(&next);
-    unsigned groups = 1, size = first.count;
-    const int is_area = size == 3u && first.value >= 200u && next.code == ')' && reading->here.before == '(';
-    if (size > 4u)
-        return 0;
-    while (next.code == '-' && labial_words_is_decimal(labial_words_following(&next))) {
-        labial_words_advance(&next);
-        size = labial_words_take_digits(&next).count;
-        if (size < 2u || size > 4u)
-            return 0;
-        groups++;
-    }
-    if (next.code == '-' || labial_words_is_inside(next.code) ||
-        !(groups > 2u || (groups == 2u && first.count == 3u && size == 4u) || is_area))
-        return 0;
-    for (; groups > 0u; groups--) {
-        labial_words_say_digits(reading, 0);
-        if (groups > 1u)
+    const unsigned count = phone_groups(&reading->here);
+    unsigned group;
+    for (group = 0; group < count; group++) {
+        if (group > 0u)
             labial_words_advance(&reading->here);
+        labial_words_say_digits(reading, 0);
     }
-    reading->context->after = AFTER_NOTHING;
-    return 1;
+    if (count > 0u)
+        reading->context->after = AFTER_NOTHING;
+    return count > 0u;
 }
 
 /* Minutes or seconds, two digits. */

@@ -52,6 +52,9 @@ static const char dates[] =
     "sept\0september\0oct\0october\0nov\0november\0dec\0december\0mon\0monday\0tue\0tuesday\0tues\0tuesday\0"
     "wed\0wednesday\0thu\0thursday\0thur\0thursday\0thurs\0thursday\0fri\0friday\0";
 
+/* Words behind which "Dr" is no drive and "St" no street, although they have a capital at a sentence's beginning. */
+static const char no_names[] = "the\0my\0our\0your\0his\0her\0their\0";
+
 static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
 
 /* Units behind a number; behind a blank only the second list. Behind those that are first in their lists a number
@@ -105,6 +108,7 @@ typedef struct {
     uint32_t small;  /* a bit for each that is a small letter or an apostrophe */
     unsigned before; /* the character before it */
     int is_title;    /* a capital, and none behind it */
+    int is_behind_name;
 } run_t;
 
 static void say_letter(labial_words_reading_t *reading, labial_words_letter_t letter)
@@ -348,6 +352,23 @@ static unsigned after_month(labial_words_reading_t *reading, unsigned after, uns
     return AFTER_NOTHING;
 }
 
+void labial_words_keep_name(labial_words_reading_t *reading)
+{
+    reading->behind_name = reading->here.code == ' ' ? reading->here.characters + 1u : 0u;
+}
+
+/* "St" and "Dr" behind a name, where no other name follows: what they mean there, or null. */
+static const char *street(const labial_words_reading_t *reading, const run_t *run)
+{
+    labial_words_place_t next = reading->here;
+    const int found = run->is_title && run->is_behind_name ? find_run(run, "st\0dr\0", 1) : -1;
+    if (next.code == '.')
+        labial_words_advance(&next);
+    while (next.code == ' ')
+        labial_words_advance(&next);
+    return found < 0 || labial_words_is_capital(next.code) ? NULL : found == 0 ? "street" : "drive";
+}
+
 /* Reads a run that rules say otherwise than by its letters. */
 static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned after, unsigned shouting)
 {
@@ -405,6 +426,11 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         labial_words_say(reading, "out", SAID_PLAIN, character);
         return 1;
     }
+    list = street(reading, run);
+    if (list) {
+        labial_words_say(reading, list, SAID_PLAIN, character);
+        return 1;
+    }
     list = meanings[(run->letters[0].letter - 1u) % 26u];
     found = find_run(run, list, 2);
     if (found >= 0) {
@@ -432,6 +458,9 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER) && read_unit(reading, after))
         return;
     take_run(&reading->here, &run);
+    run.is_behind_name = run.letters[0].character + 1u == reading->behind_name;
+    if (run.count > 1u && (run.small & 1u) == 0u && find_run(&run, no_names, 1) < 0)
+        labial_words_keep_name(reading);
     context->shouting = 0;
     if (read_rule(reading, &run, after, shouting))
         return;

@@ -183,14 +183,24 @@ void labial_words_read_fraction(labial_words_reading_t *reading)
     labial_words_say_digits(reading, 0);
 }
 
-/* "to" and another number behind a number. */
-int labial_words_read_range(labial_words_reading_t *reading)
+/* Moves to the number, which may be a sum, that a number here reaches up to; whether there is one. */
+static int takes_range(labial_words_place_t *here)
 {
-    labial_words_place_t next = reading->here;
+    labial_words_place_t next = *here;
     if (next.code != '-' && next.code != ':' && next.code != SIGN_DASH)
         return 0;
     labial_words_advance(&next);
     if (!labial_words_is_decimal(next.code) && !labial_words_is_sum(&next))
+        return 0;
+    *here = next;
+    return 1;
+}
+
+/* "to" and another number behind a number. */
+int labial_words_read_range(labial_words_reading_t *reading)
+{
+    labial_words_place_t next = reading->here;
+    if (!takes_range(&next))
         return 0;
     labial_words_say(reading, "to", SAID_PLAIN, labial_words_here(reading));
     reading->here = next;
@@ -253,6 +263,7 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
     } else if (takes_ordinal(here)) {
         say_number(reading, &number, ORDINAL, first.characters - 1u);
         reading->context->after = AFTER_NOTHING;
+        labial_words_keep_name(reading);
         return;
     } else {
         say_number(reading, &number, CARDINAL, first.characters - 1u);
@@ -338,17 +349,17 @@ static unsigned take_scale(labial_words_place_t *here)
     return THOUSAND + i;
 }
 
-void labial_words_read_sum(labial_words_reading_t *reading)
+/* Reads a sum without its sign, at whose character it is said; `is_upper` behind "to". Returns whether a number without
+ * a sign follows up to which it reaches: "$5-10". */
+static int read_amount(labial_words_reading_t *reading, unsigned character, int is_upper)
 {
     labial_words_context_t *context = reading->context;
-    labial_words_place_t *here = &reading->here, behind, dot;
-    const unsigned currency = (unsigned)labial_words_currency(here->code) & 7u, character = labial_words_here(reading);
-    const char *const name = labial_words_listed(currencies, currency);
-    const char *const part = labial_words_listed(hundredths, currency);
+    labial_words_place_t *here = &reading->here, behind, dot, next;
+    const char *const name = labial_words_listed(currencies, context->currency);
+    const char *const part = labial_words_listed(hundredths, context->currency);
     labial_words_number_t whole, cents;
     unsigned scale, point, last, first;
-    int has_point, has_cents, is_plural;
-    labial_words_advance(here);
+    int has_point, has_cents, is_plural, is_lower;
     behind = *here;
     whole = take_whole(&behind);
     last = whole.last;
@@ -367,9 +378,10 @@ void labial_words_read_sum(labial_words_reading_t *reading)
     last = has_point ? cents.last : last;
     scale = take_scale(&behind);
     has_cents = has_point && cents.count == 2u && scale == NO_WORD && *part != '\0';
-    is_plural = whole.count != 1u || whole.value != 1u || (has_point && !has_cents);
+    is_plural = is_upper || whole.count != 1u || whole.value != 1u || (has_point && !has_cents);
+    next = behind;
+    is_lower = takes_range(&next) && labial_words_is_decimal(next.code);
     context->after = AFTER_SUM;
-    context->currency = (uint8_t)currency;
     context->tail = 0;
     if (!has_cents || whole.is_other || cents.value == 0u) {
         if (is_coded(&whole))
@@ -398,10 +410,24 @@ void labial_words_read_sum(labial_words_reading_t *reading)
             labial_words_say(reading, labial_words_listed(cardinals, scale), SAID_PLAIN, last);
             context->after = AFTER_NOTHING;
         }
-        labial_words_say_name(reading, name, is_plural || scale != NO_WORD, last);
+        if (scale != NO_WORD || !is_lower)
+            labial_words_say_name(reading, name, is_plural || scale != NO_WORD, last);
         if (scale == NO_WORD)
             labial_words_keep_tail(reading, first);
     }
     *here = behind;
     (void)labial_words_read_range(reading);
+    return is_lower;
+}
+
+void labial_words_read_sum(labial_words_reading_t *reading)
+{
+    unsigned character = labial_words_here(reading);
+    int is_upper = 0;
+    reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
+    labial_words_advance(&reading->here);
+    while (read_amount(reading, character, is_upper)) {
+        is_upper = 1;
+        character = labial_words_here(reading);
+    }
 }

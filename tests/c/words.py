@@ -83,7 +83,14 @@ PHRASES = [*"""
            "March 5", "Dec. 25", "May 5-7", "March 5.5", "5 km",
            "1 h", "10 AM", "I AM", "IS IT", "IT is", "(laughs softly) yes", "<break time='1s'/> go", "[a b] c",
            "[a b c d e f g h i j", "*leans in* yes", "*really* no", "2 1/2", "1 1/4", "20 €", "20 °C", "$20 / hour",
-           "5 km / h", "5 in 6", "$5. Million"]
+           "5 km / h", "5 in 6", "$5. Million",
+           "$5-10", "$5–10k", "$5k-10", "$1-1", "$.50-1", "$5.50-6.00", "$5-10 million", "$5-$10", "$5-10-15", "$5-x",
+           "+1 555 123 4567", "+15551234567", "+44 20.7946-0958", "+1 555 1234", "+1234 567 890", "+1 555 123 4567x",
+           "+1234567890123456", "555 123 4567", "555.123.4567", "155 123 4567", "555 123 4567 8", "555.123 4567",
+           "555 123 4567x", "555 123 4567-8", "5 555 123", "+55-66-77", "+555-666-7777",
+           "Main St.", "Elm Dr, x", "Elm Dr. Foo", "Elm St x", "the St. x", "Our Dr. is", "42nd St.", "42nd St. Louis",
+           "In St. Louis", "St. x", "Elm  St.", "Elm ST", "A St.", "Elm. St.", "Elm \u0301St", "\u0301Elm St",
+           "Ave St. x Dr"]
 LONG = ["111111111" * 30, "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()

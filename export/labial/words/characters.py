@@ -76,3 +76,8 @@ def simplified(character: str) -> str:
 def _accent(character: str) -> str:
     code = ord(character)
     return _ACCENTED[code - 0xC0 & 31].strip() if 0xC0 <= code < 0x100 else ""
+
+
+def is_inside(character: str) -> bool:
+    """Whether a simple character is a letter or a digit."""
+    return character == FOREIGN or (character.isascii() and character.isalnum())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import List, Optional
+from typing import List, Optional, Tuple
 
 from labial.words import characters as signs
 from labial.words.said import Said, inflected
@@ -31,7 +31,9 @@ _FRACTION = re.compile(r"\.([0-9]+)")
 _DIGITS = re.compile(r"[0-9](?:,?[0-9])*")
 _ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})" + END)
 _DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
-_PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])")
+_PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])"
+                    r"|[2-9][0-9]{2}(?P<sign>[. ])[0-9]{3}(?P=sign)[0-9]{4}(?!(?P=sign)?[0-9])(?![A-Za-z\1])")
+_GROUPS = re.compile(r"[0-9]+(?:[-. ][0-9]+)*")
 _AREA = re.compile(r"[2-9][0-9]{2}(?=\))")
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
 _SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
@@ -56,40 +58,54 @@ def currency_of(sign: str) -> int:
 
 def read_sum(said: Said, place: int) -> int:
     """Reads a sign of money and its number; returns the place behind them."""
-    currency, name = _SIGNS.index(said.simple[place]), CURRENCIES[_SIGNS.index(said.simple[place])]
-    whole = _WHOLE.match(said.simple, place + 1)
+    said.context.currency = _SIGNS.index(said.simple[place])
+    end, is_lower = _read_amount(said, place + 1, place, False)
+    while is_lower:
+        end, is_lower = _read_amount(said, end, end, True)
+    return end
+
+
+def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, bool]:
+    """Reads a sum without its sign, said at a place; `is_upper` behind "to".
+
+    Returns the place behind it, and whether a number without a sign stands there up to which it reaches: "$5-10".
+    """
+    currency, name = said.context.currency, CURRENCIES[said.context.currency]
+    whole = _WHOLE.match(said.simple, place)
     digits = whole[0].replace(",", "") if whole else ""
-    end = whole.end() if whole else place + 1
-    coded = _DIGITS.match(said.simple, place + 1) if _is_coded(digits) else None
+    end = whole.end() if whole else place
+    coded = _DIGITS.match(said.simple, place) if _is_coded(digits) else None
     end = coded.end() if coded else end
     fraction = _FRACTION.match(said.simple, end)
     after = fraction.end() if fraction else end
     scale = _SCALE.match(said.simple, after)
     cents = fraction[1] if fraction and len(fraction[1]) == 2 and not scale and _HUNDREDTHS[currency] else None
     main = digits.lstrip("0")
+    behind = scale.end() if scale else after
+    is_lower = is_range(said, behind) and said.at(behind + 1).isdigit()
     context = said.context
-    context.after, context.currency, context.tail = "sum", currency, 0
+    context.after, context.tail = "sum", 0
     if cents is None or main or cents == "00":
         if coded:
-            _say_digits(said, coded[0], place + 1)
+            _say_digits(said, coded[0], place)
         else:
-            said.say(" ".join(cardinal(digits)), place)
+            said.say(" ".join(cardinal(digits)), at)
     if fraction and cents is None:
         read_fraction(said, end)
     if scale:
         said.say(_LETTER_SCALES[scale[1].lower()] + " " + inflected(name, True), after - 1)
         context.after = ""
-        return read_range(said, scale.end())
-    plural = digits != "1" or (fraction is not None and cents is None)
+        return read_range(said, behind), is_lower
+    plural = is_upper or digits != "1" or (fraction is not None and cents is None)
     if cents is None:
-        said.say_tail(inflected(name, plural), after - 1)
+        said.say_tail("" if is_lower else inflected(name, plural), after - 1)
     elif main or cents == "00":
         said.say(inflected(name, plural), end)
     if cents is not None and cents != "00":
         if main:
             said.say("and", end)
         said.say(" ".join(cardinal(cents)) + " " + inflected(_HUNDREDTHS[currency], cents != "01"), end)
-    return read_range(said, after)
+    return read_range(said, after), is_lower
 
 
 def read_number(said: Said, place: int) -> int:
@@ -134,6 +150,7 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
         if ordinal:
             say_ordinal(said, digits, place)
             said.context.after = ""
+            said.keep_name(ordinal.end())
             return ordinal.end()
         if is_start and not said.context.mark and len(digits) <= 2 and 1 <= int(digits) <= 31:
             said.say_tail(" ".join(cardinal(digits)), place)
@@ -161,9 +178,14 @@ def _behind(said: Said, end: int) -> int:
     return read_range(said, end)
 
 
+def is_range(said: Said, end: int) -> bool:
+    """Whether a number that ends here reaches up to another one."""
+    return said.at(end) in ("-", ":", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1))
+
+
 def read_range(said: Said, end: int) -> int:
     """Reads "to" where a number reaches up to another one; returns the place behind it."""
-    if said.at(end) in ("-", ":", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1)):
+    if is_range(said, end):
         said.say("to", end)
         return end + 1
     return end
@@ -191,7 +213,9 @@ def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
 
 
 def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
-    found = _PHONE.match(said.simple, place)
+    found = _GROUPS.match(said.simple, place) if said.at(place - 1) == "+" else None
+    if not found or not _is_abroad(found[0]) or signs.is_inside(said.at(found.end())):
+        found = _PHONE.match(said.simple, place)
     if not found and said.at(place - 1) == "(":
         found = _AREA.match(said.simple, place)
     if not found:
@@ -199,6 +223,12 @@ def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
     _say_digits(said, found[0], place)
     said.context.after = ""
     return found.end()
+
+
+def _is_abroad(groups: str) -> bool:
+    """Whether groups of digits behind a plus are the number of a telephone."""
+    digits = sum(map(str.isdigit, groups))
+    return 8 <= digits <= _MOST_DIGITS and (digits == len(groups) or not groups[:4].isdigit())
 
 
 def _read_time(said: Said, place: int, _: bool) -> Optional[int]:

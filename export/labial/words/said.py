@@ -43,11 +43,16 @@ class Said:
         self.tables, self.characters, self.context = tables, characters, context
         self.simple = "".join(item.plain for item in characters)
         self.phonemes: List[Tuple[int, int, bool]] = []
+        self.behind_name = -1  #: where a word behind a name and a blank begins
         self.foreign = False  #: there was a letter of another script
 
     def at(self, place: int) -> str:
         """The simple character of a place; blanks around the text."""
         return self.simple[place] if 0 <= place < len(self.simple) else BLANK
+
+    def keep_name(self, end: int) -> None:
+        """Notes that a word ends here that may name a street: one with a capital, or an ordinal."""
+        self.behind_name = self.characters[end].place + 1 if self.at(end) == BLANK and end < len(self.simple) else -1
 
     def add(self, phoneme: int, place: int, first: bool) -> None:
         """Adds a phoneme, unless there is no room."""

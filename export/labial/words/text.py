@@ -34,6 +34,9 @@ ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok oh kay;omg oh e
 btw bee tee double_you;fyi eff why eye;tbh tee bee aitch;pls please;plz please;thx thanks;nato nay toe;uber oober
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
+#: The same behind a name, unless another name follows; and words that are no names at a sentence's beginning.
+_STREETS = {"St": "street", "Dr": "drive"}
+_NO_NAMES = frozenset("the my our your his her their".split())
 _DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
                   "January February March April June July August September September October November December Monday "
                   "Tuesday Tuesday Wednesday Thursday Thursday Thursday Friday".lower().split()))
@@ -86,6 +89,7 @@ _ENDINGS, _LONGEST_VERB = ("s", "es", "ing"), 12
 _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours theirs hers towards besides".split())
 
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
+_NAME = re.compile(r"\.? *[A-Z]")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
@@ -111,11 +115,6 @@ def read(tables: WordTables, text: str, before: Optional[Context] = None) -> Rea
     reader.end_word()
     kind = "read" if said.phonemes else "unknown" if said.foreign else "silent"
     return Reading(kind, tuple(said.phonemes), min(len(text), CHARACTERS), context)
-
-
-def is_inside(character: str) -> bool:
-    """Whether a simple character is a letter or a digit."""
-    return character == FOREIGN or (character.isascii() and character.isalnum())
 
 
 class _Reader:
@@ -172,7 +171,7 @@ class _Reader:
 
     def _is_direction(self, place: int, closing: str) -> bool:
         found = re.compile("[A-Za-z]+").match(self.simple, place + 1)
-        if not found or is_inside(self.said.at(found.end())):
+        if not found or signs.is_inside(self.said.at(found.end())):
             return False
         word = found[0].lower()
         follows = self.said.at(found.end())
@@ -197,7 +196,7 @@ class _Reader:
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
             return self._read_degrees(place, after)
-        if here == "." and follows.isdigit() and not is_inside(before):
+        if here == "." and follows.isdigit() and not signs.is_inside(before):
             self.context.after = "number"
             return numbers.read_fraction(said, place)
         if here == "/" and after in ("unit", "sum") and follows.isascii() and follows.isalpha():
@@ -216,7 +215,7 @@ class _Reader:
             said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
         elif here == "#" and follows.isdigit():
             said.say("number", place)
-        elif here == "#" and before.isascii() and before.isalpha() and not is_inside(follows):
+        elif here == "#" and before.isascii() and before.isalpha() and not signs.is_inside(follows):
             said.say("sharp", place)
         elif here == "<" and follows.isdigit():
             said.say("less than", place)
@@ -227,7 +226,7 @@ class _Reader:
     def _read_degrees(self, place: int, after: str) -> int:
         self.said.say("degree" if after == "one" else "degrees", place)
         scale = self.said.at(place + 1)
-        if scale in ("C", "F") and not is_inside(self.said.at(place + 2)):
+        if scale in ("C", "F") and not signs.is_inside(self.said.at(place + 2)):
             self.said.say("celsius" if scale == "C" else "fahrenheit", place + 1)
             return place + 2
         return place + 1
@@ -236,16 +235,16 @@ class _Reader:
         """Signs that are said within an address, a minus before a number."""
         said = self.said
         is_small = follows.isascii() and follows.islower()
-        if here == "." and is_small and (is_inside(before) or before == BLANK):
+        if here == "." and is_small and (signs.is_inside(before) or before == BLANK):
             said.say("dot", place)
             self.address = True
-        elif here == ":" and is_inside(before) and self.simple.startswith("//", place + 1):
+        elif here == ":" and signs.is_inside(before) and self.simple.startswith("//", place + 1):
             said.say("colon slash slash", place)
             self.address = True
             return place + 3
         elif here == "-" and (follows.isdigit() or numbers.is_sum(said, place + 1)) and before in (BLANK, "("):
             said.say("minus", place)
-        elif self.address and is_inside(follows) and here != ".":
+        elif self.address and signs.is_inside(follows) and here != ".":
             said.say({"/": "slash", "-": "dash", "_": "underscore", ":": "colon"}[here], place)
         return place + 1
 
@@ -304,6 +303,9 @@ class _Reader:
         said, context, small = self.said, self.context, run.lower()
         follows = said.at(place + len(run))
         shouting, context.shouting = context.shouting, False
+        is_behind_name = said.characters[place].place == said.behind_name
+        if run[0].isupper() and len(run) > 1 and small not in _NO_NAMES:
+            said.keep_name(place + len(run))
         if small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
             said.take_back() if after == "time" else None
             said.say_names(small, range(place, place + 2), False)
@@ -326,6 +328,8 @@ class _Reader:
             context.after = "with"
         elif small == "o" and after == "with":
             said.say("out", place)
+        elif run in _STREETS and is_behind_name and not _NAME.match(self.simple, place + len(run)):
+            said.say(_STREETS[run], place)
         elif small in _MEANINGS:
             said.say(_MEANINGS[small], place)
         elif self.address and before == "." and self._is_spelt_in_address(small):
