@@ -1,11 +1,12 @@
 /*
  * voice_parts.h - what the files of labial/voice.h share.
  *
- *     voice.c        calls, utterances, messages
- *     voice_frames.c the frames that are due
- *     voice_items.c  the items of all utterances, in one array
- *     voice_plan.c   items to phonemes in time, without gaps
- *     voice_words.c  words and characters to phonemes; linked by labial_voice_words() alone
+ *     voice.c          calls, and the queue of utterances
+ *     voice_messages.c what is told, to items of utterances
+ *     voice_frames.c   the frames that are due
+ *     voice_items.c    the items of all utterances, in one array
+ *     voice_plan.c     items to phonemes in time, without gaps
+ *     voice_words.c    words and characters to phonemes; linked by labial_voice_words() alone
  */
 #ifndef LABIAL_VOICE_PARTS_H
 #define LABIAL_VOICE_PARTS_H
@@ -33,6 +34,29 @@ static inline int64_t labial_voice_moment(const labial_voice_t *voice, uint32_t 
     const uint32_t rate = voice->model->frames_per_second, seconds = labial_quotient(frame, rate);
     return (int64_t)seconds * 1000 + labial_quotient((frame - seconds * rate) * 1000u, rate);
 }
+
+/* No kind of items. */
+#define LABIAL_VOICE_NO_KIND 0xffu
+
+/* LABIAL_OK for a voice that was initialised, else the error that every call on it returns. */
+static inline int labial_voice_status(const labial_voice_t *voice)
+{
+    return !voice ? LABIAL_ERROR_NULL : voice->model ? LABIAL_OK : LABIAL_ERROR_STATE;
+}
+
+/* When the next frame is due, milliseconds. */
+static inline int64_t labial_voice_now(const labial_voice_t *voice)
+{
+    return labial_voice_moment(voice, voice->next);
+}
+
+/* ---- Utterances -------------------------------------------------------------------------------------------------- */
+
+/* Moves the utterances that are queued behind one that was told more of. */
+void labial_voice_requeue(labial_voice_t *voice, unsigned position);
+
+/* The position of the utterance that a message of this identity belongs to, which may be a new one; or an error. */
+int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity);
 
 /* ---- Items: a place is told by its index; those of an utterance lie one after the other -------------------------- */
 
