@@ -153,7 +153,7 @@ def test_garbage_is_answered_at_once(name: str, message: Any) -> None:
 
 
 def test_limits_are_the_same_in_javascript_and_c() -> None:
-    text = (SOURCE / "web" / "services.js").read_text(encoding="utf-8")
+    text = (SOURCE / "web" / "entries.js").read_text(encoding="utf-8")
     found = re.search(r"LIMITS = \{ nesting: (\d+), documents: (\d+), items: (\d+), text: (\d+) \}", text)
     assert found and [int(value) for value in found.groups()] == [
         limits.MESSAGE_NESTING, limits.MESSAGE_DOCUMENTS, limits.MESSAGE_ITEMS, limits.MESSAGE_TEXT]
