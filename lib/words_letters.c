@@ -16,23 +16,23 @@ static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
 /* Abbreviations, and words that the trees would misread, by their first letter; each with what is said. */
 static const char *const meanings[] = {
-    "approx\0approximately\0ave\0avenue\0ascii\0askey\0",
-    "blvd\0boulevard\0btw\0bee tee double you\0",
-    "capt\0captain\0cmos\0sea moss\0",
-    "dr\0doctor\0dept\0department\0",
-    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0",
+    "approx\0approximately\0ave\0avenue\0ascii\0askey\0android\0an droid\0anime\0annie may\0airbnb\0air bee en bee\0",
+    "blvd\0boulevard\0btw\0bee tee double you\0bouquet\0boo kay\0ballet\0bal lay\0",
+    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0",
+    "dr\0doctor\0dept\0department\0debris\0deh bree\0",
+    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0",
     "fi\0fie\0ftp\0eff tee pee\0fyi\0eff why eye\0",
-    "govt\0government\0gnu\0new\0",
-    ("http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0"
-     "haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0"),
+    "govt\0government\0gnu\0new\0gmail\0gee mail\0",
+    ("http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0"
+     "hahaha\0hah hah hah\0hehe\0hee hee\0"),
     "ii\0two\0iii\0three\0idk\0eye dee kay\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
-    "",
-    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0",
-    "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0",
-    "nato\0nay toe\0",
-    "ok\0oh kay\0omg\0oh em gee\0",
-    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0pls\0please\0plz\0please\0",
+    "kubernetes\0cooper netties\0karate\0cah rah tee\0",
+    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0latte\0lah tay\0",
+    "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0mysql\0my sequel\0",
+    "nato\0nay toe\0nvidia\0en vidia\0nginx\0engine ex\0",
+    "ok\0oh kay\0omg\0oh em gee\0openai\0open ay eye\0",
+    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0",
     "",
     "rd\0road\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0",
@@ -40,8 +40,8 @@ static const char *const meanings[] = {
     "ugh\0ug\0uber\0oober\0",
     "vs\0versus\0vol\0volume\0vii\0seven\0viii\0eight\0",
     "wi\0why\0wifi\0why fie\0www\0double you double you double you\0whoa\0woe\0",
-    "xii\0twelve\0xiv\0fourteen\0",
-    "yaml\0yamel\0yuck\0yuk\0",
+    "xii\0twelve\0xiv\0fourteen\0xbox\0ex box\0",
+    "yaml\0yamel\0yuck\0yuk\0youtube\0you tube\0y'all\0yawl\0",
     "",
 };
 
@@ -87,6 +87,14 @@ static const char short_words[] =
     "UGH\0USE\0GYM\0VIA\0";
 static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
+/* Small letters that are read one by one like capitals, though they have a vowel; sounds and parts of words that are
+ * not, though they have none. */
+static const char spelt_small[] =
+    "usb\0cpu\0gpu\0url\0abc\0diy\0faq\0ceo\0cfo\0usa\0uk\0eu\0ai\0id\0nba\0xyz\0hdmi\0hbo\0"
+    "tba\0ttyl\0";
+static const char small_sounds[] = "hm\0hmm\0mm\0mhm\0grr\0brr\0pfft\0pff\0pst\0psst\0sh\0shh\0ssh\0tsk\0tss\0tch\0"
+                                   "hmph\0nth\0zz\0bzz\0ll\0nt\0th\0nd\0";
+
 /* How words begin and end, and vowels that stand together in them; at the end of three letters the second list. */
 static const char word_onsets[] =
     "BL\0BR\0CH\0CL\0CR\0DR\0DW\0FL\0FR\0GH\0GL\0GR\0KN\0PH\0PL\0PR\0SC\0SH\0SK\0SL\0SM\0SN\0SP\0"
@@ -108,6 +116,7 @@ typedef struct {
     uint32_t small;  /* a bit for each that is a small letter or an apostrophe */
     unsigned before; /* the character before it */
     int is_title;    /* a capital, and none behind it */
+    int is_small;    /* no capital */
     int is_behind_name;
 } run_t;
 
@@ -122,6 +131,7 @@ static void take_run(labial_words_place_t *here, run_t *run)
     unsigned before = TEXT_END;
     memset(run, 0, sizeof *run);
     run->before = here->before;
+    run->is_small = 1;
     while (run->count < LABIAL_WORDS_LETTERS) {
         const unsigned code = here->code;
         const int is_inner = code == '\'' && labial_words_is_latin(labial_words_following(here));
@@ -134,7 +144,9 @@ static void take_run(labial_words_place_t *here, run_t *run)
         run->letters[run->count].letter = (uint8_t)(is_inner ? 27u : labial_words_small_letter(code) - 'a' + 1u);
         run->letters[run->count].sound = (uint8_t)(is_inner ? 0u : labial_words_accented(here));
         run->letters[run->count].character = (uint8_t)(here->characters - 1u);
-        if (!labial_words_is_capital(code))
+        if (labial_words_is_capital(code))
+            run->is_small = 0;
+        else
             run->small |= (uint32_t)1 << run->count;
         run->count++;
         before = code;
@@ -184,7 +196,28 @@ static int is_pronounceable(const char *letters, unsigned count)
     return is_other || last == count;
 }
 
-/* How many letters at the beginning of a run are capitals that are read one by one; behind them there is nothing, an s
+/* How many letters of a run of small ones are read one by one: two to five without a vowel, none of them three times in
+ * a row, and those listed; behind them there is nothing or 's. */
+static unsigned spelt_small_letters(const run_t *run)
+{
+    const char *const letters = run->capitals;
+    unsigned count = run->count, i;
+    if (count - 2u > 5u)
+        return 0;
+    if (run->letters[count - 1u].letter == 19u && run->letters[count - 2u].letter == 27u)
+        count -= 2u;
+    if (labial_words_is_listed(letters, count, spelt_small))
+        return count;
+    if (count < 2u || count > 5u || labial_words_is_listed(letters, count, small_sounds))
+        return 0;
+    for (i = 0; i < count; i++)
+        if (is_vowel(letters, i) || letters[i] == 'Y' || letters[i] == '\'' ||
+            (i > 1u && letters[i] == letters[i - 1u] && letters[i] == letters[i - 2u]))
+            return 0;
+    return count;
+}
+
+/* How many letters at the beginning of a run are capitals, or small, that are read one by one; behind them there is nothing, an s
  * or 's. */
 static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
 {
@@ -195,6 +228,8 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
                (letters[0] == 'A' && run->small == 0u &&
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
                  !labial_words_is_blank(follows)));
+    if (run->is_small)
+        return spelt_small_letters(run);
     if (run->small != 0u) {
         if (run->letters[count - 1u].letter != 19u || (run->small >> (count - 1u)) == 0u) /* a small s */
             return 0;

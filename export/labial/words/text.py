@@ -32,6 +32,10 @@ http aitch tee tee pee;https aitch tee tee pee ess;ftp eff tee pee;edu ee dee yo
 jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
 ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok oh kay;omg oh em gee;idk eye dee kay
 btw bee tee double_you;fyi eff why eye;tbh tee bee aitch;pls please;plz please;thx thanks;nato nay toe;uber oober
+xbox ex box;gmail gee mail;youtube you tube;android an droid;nvidia en vidia;mysql my sequel;nginx engine ex
+kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may;bouquet boo kay;ballet bal lay
+cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control;airbnb air bee en bee
+pilates pee lah teez;y'all yawl
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
 #: The same behind a name, unless another name follows; and words that are no names at a sentence's beginning.
@@ -66,6 +70,11 @@ _SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NE
 _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR OX SO TO UP WE YO HA AH UH UM EH
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
     ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA""".split())
+#: Small letters that are read one by one like capitals, though they have a vowel; sounds and parts of words that are not,
+#: though they have none.
+_SPELT_SMALL = frozenset("usb cpu gpu url abc diy faq ceo cfo usa uk eu ai id nba xyz hdmi hbo tba ttyl".split())
+_SOUNDS = frozenset("hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th nd".split())
+_SMALL = re.compile(r"(?!.*(.)\1\1)[b-df-hj-np-tv-xz]{2,5}$")
 #: Words unless the word before is not in capitals.
 _SHOUTED = frozenset(["AM", "IT", "US", "WHO"])
 _ONSETS = frozenset("""BL BR CH CL CR DR DW FL FR GH GL GR KN PH PL PR SC SH SK SL SM SN SP ST SQ SW TH TR TW WH WR SCR
@@ -335,7 +344,7 @@ class _Reader:
         elif self.address and before == "." and self._is_spelt_in_address(small):
             said.say_names(small, range(place, place + len(small)), False)
         elif self._is_spelt(run, before, follows, shouting):
-            letters = _capitals(run)
+            letters = _owner(run) if run == small else _capitals(run)
             said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
         else:
             context.after = self._month(place, after) if run in numbers.MONTHS else ""
@@ -363,6 +372,8 @@ class _Reader:
         """Whether letters are read one by one."""
         if len(run) == 1:
             return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+]", before)) or follows != BLANK))
+        if run.islower():
+            return _is_spelt_small(_owner(run))
         letters = _capitals(run)
         if not (letters.isalpha() and letters.isupper() and 2 <= len(letters) <= 5):
             return False
@@ -371,6 +382,15 @@ class _Reader:
         if letters in _SHOUTED:
             return not shouting
         return letters in _SPELT or not (letters in _WORDS or is_pronounceable(letters))
+
+
+def _owner(run: str) -> str:
+    """Small letters without the 's behind them."""
+    return run[:-2] if run.endswith("'s") else run
+
+
+def _is_spelt_small(letters: str) -> bool:
+    return letters in _SPELT_SMALL or (letters not in _SOUNDS and bool(_SMALL.match(letters)))
 
 
 def _capitals(run: str) -> str:
