@@ -14,33 +14,35 @@ static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
 static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
-/* Abbreviations, and words that the trees would misread, by their first letter; each with what is said. */
+/* Abbreviations, and words that the trees would misread, by their first letter; each with what is said, or - if it is
+ * read letter by letter. */
 static const char *const meanings[] = {
-    "approx\0approximately\0ave\0avenue\0ascii\0askey\0android\0an droid\0anime\0annie may\0airbnb\0air bee en bee\0",
-    "blvd\0boulevard\0btw\0bee tee double you\0bouquet\0boo kay\0ballet\0bal lay\0",
-    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0",
-    "dr\0doctor\0dept\0department\0debris\0deh bree\0",
-    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0",
-    "fi\0fie\0ftp\0eff tee pee\0fyi\0eff why eye\0",
-    "govt\0government\0gnu\0new\0gmail\0gee mail\0",
-    ("http\0aitch tee tee pee\0https\0aitch tee tee pee ess\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0"
-     "hahaha\0hah hah hah\0hehe\0hee hee\0"),
-    "ii\0two\0iii\0three\0idk\0eye dee kay\0",
+    ("approx\0approximately\0ave\0avenue\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
+     "airbnb\0air bee en bee\0abc\0-\0ai\0-\0"),
+    "blvd\0boulevard\0btw\0-\0bouquet\0boo kay\0ballet\0bal lay\0",
+    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0",
+    "dr\0doctor\0dept\0department\0debris\0deh bree\0diy\0-\0",
+    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0eu\0-\0",
+    "fi\0fie\0ftp\0-\0fyi\0-\0faq\0-\0",
+    "govt\0government\0gnu\0new\0gmail\0gee mail\0gpu\0-\0",
+    ("http\0-\0https\0-\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0"
+     "hdmi\0-\0hbo\0-\0"),
+    "ii\0two\0iii\0three\0idk\0-\0id\0-\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "kubernetes\0cooper netties\0karate\0cah rah tee\0",
     "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0latte\0lah tay\0",
     "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0mysql\0my sequel\0",
-    "nato\0nay toe\0nvidia\0en vidia\0nginx\0engine ex\0",
-    "ok\0oh kay\0omg\0oh em gee\0openai\0open ay eye\0",
-    "prof\0professor\0ph\0pee aitch\0phd\0pee aitch dee\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0",
+    "nato\0nay toe\0nvidia\0en vidia\0nginx\0engine ex\0nba\0-\0",
+    "ok\0-\0omg\0-\0openai\0open ay eye\0",
+    "prof\0professor\0ph\0-\0phd\0-\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0",
     "",
     "rd\0road\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0",
-    "tbh\0tee bee aitch\0thx\0thanks\0",
-    "ugh\0ug\0uber\0oober\0",
+    "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0",
+    "ugh\0ug\0uber\0oober\0usb\0-\0url\0-\0usa\0-\0uk\0-\0",
     "vs\0versus\0vol\0volume\0vii\0seven\0viii\0eight\0",
-    "wi\0why\0wifi\0why fie\0www\0double you double you double you\0whoa\0woe\0",
-    "xii\0twelve\0xiv\0fourteen\0xbox\0ex box\0",
+    "wi\0why\0wifi\0why fie\0www\0-\0whoa\0woe\0",
+    "xii\0twelve\0xiv\0fourteen\0xbox\0ex box\0xyz\0-\0",
     "yaml\0yamel\0yuck\0yuk\0youtube\0you tube\0y'all\0yawl\0",
     "",
 };
@@ -87,11 +89,7 @@ static const char short_words[] =
     "UGH\0USE\0GYM\0VIA\0";
 static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
-/* Small letters that are read one by one like capitals, though they have a vowel; sounds and parts of words that are
- * not, though they have none. */
-static const char spelt_small[] =
-    "usb\0cpu\0gpu\0url\0abc\0diy\0faq\0ceo\0cfo\0usa\0uk\0eu\0ai\0id\0nba\0xyz\0hdmi\0hbo\0"
-    "tba\0ttyl\0";
+/* Small letters without a vowel that are not read one by one: sounds and parts of words. */
 static const char small_sounds[] = "hm\0hmm\0mm\0mhm\0grr\0brr\0pfft\0pff\0pst\0psst\0sh\0shh\0ssh\0tsk\0tss\0tch\0"
                                    "hmph\0nth\0zz\0bzz\0ll\0nt\0th\0nd\0";
 
@@ -197,7 +195,7 @@ static int is_pronounceable(const char *letters, unsigned count)
 }
 
 /* How many letters of a run of small ones are read one by one: two to five without a vowel, none of them three times in
- * a row, and those listed; behind them there is nothing or 's. */
+ * a row; behind them there is nothing or 's. */
 static unsigned spelt_small_letters(const run_t *run)
 {
     const char *const letters = run->capitals;
@@ -206,19 +204,17 @@ static unsigned spelt_small_letters(const run_t *run)
         return 0;
     if (run->letters[count - 1u].letter == 19u && run->letters[count - 2u].letter == 27u)
         count -= 2u;
-    if (labial_words_is_listed(letters, count, spelt_small))
-        return count;
-    if (count < 2u || count > 5u || labial_words_is_listed(letters, count, small_sounds))
+    if (count - 2u > 3u)
         return 0;
     for (i = 0; i < count; i++)
         if (is_vowel(letters, i) || letters[i] == 'Y' || letters[i] == '\'' ||
             (i > 1u && letters[i] == letters[i - 1u] && letters[i] == letters[i - 2u]))
             return 0;
-    return count;
+    return labial_words_is_listed(letters, count, small_sounds) ? 0u : count;
 }
 
-/* How many letters at the beginning of a run are capitals, or small, that are read one by one; behind them there is nothing, an s
- * or 's. */
+/* How many letters at the beginning of a run are read one by one, all of them capitals or small; behind them there is
+ * nothing, an s or 's. */
 static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
 {
     const char *const letters = run->capitals;
@@ -469,7 +465,11 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     list = meanings[(run->letters[0].letter - 1u) % 26u];
     found = find_run(run, list, 2);
     if (found >= 0) {
-        labial_words_say(reading, labial_words_listed(list, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
+        list = labial_words_listed(list, 2u * (unsigned)found + 1u);
+        if (*list == '-')
+            say_letters(reading, run, run->count);
+        else
+            labial_words_say(reading, list, SAID_PLAIN, character);
         return 1;
     }
     count = reading->is_address && run->before == '.' && is_spelt_in_address(run)

@@ -24,18 +24,18 @@ _DIRECTION = 8
 _SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times",
           signs.DIVIDED: "divided by", signs.SQUARE: "squared"}
 _PARTS = {signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}
+#: Abbreviations, and words that the trees would misread, with what is said, or - if they are read letter by letter.
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
 prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
 blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
-wi why;fi fie;wifi why fie;ph pee aitch;phd pee aitch dee;www double_you double_you double_you
-http aitch tee tee pee;https aitch tee tee pee ess;ftp eff tee pee;edu ee dee you;ascii askey;jpeg jay peg
-jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
-ii two;iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok oh kay;omg oh em gee;idk eye dee kay
-btw bee tee double_you;fyi eff why eye;tbh tee bee aitch;pls please;plz please;thx thanks;nato nay toe;uber oober
-xbox ex box;gmail gee mail;youtube you tube;android an droid;nvidia en vidia;mysql my sequel;nginx engine ex
-kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may;bouquet boo kay;ballet bal lay
-cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control;airbnb air bee en bee
-pilates pee lah teez;y'all yawl
+wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
+mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume;ii two
+iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please
+thx thanks;nato nay toe;uber oober;xbox ex box;gmail gee mail;youtube you tube;android an droid;nvidia en vidia
+mysql my sequel;nginx engine ex;kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may
+bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control
+airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -
+uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
 #: The same behind a name, unless another name follows; and words that are no names at a sentence's beginning.
@@ -70,9 +70,7 @@ _SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NE
 _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR OX SO TO UP WE YO HA AH UH UM EH
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
     ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA""".split())
-#: Small letters that are read one by one like capitals, though they have a vowel; sounds and parts of words that are not,
-#: though they have none.
-_SPELT_SMALL = frozenset("usb cpu gpu url abc diy faq ceo cfo usa uk eu ai id nba xyz hdmi hbo tba ttyl".split())
+#: Small letters without a vowel that are not read one by one: sounds and parts of words.
 _SOUNDS = frozenset("hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th nd".split())
 _SMALL = re.compile(r"(?!.*(.)\1\1)[b-df-hj-np-tv-xz]{2,5}$")
 #: Words unless the word before is not in capitals.
@@ -340,7 +338,10 @@ class _Reader:
         elif run in _STREETS and is_behind_name and not _NAME.match(self.simple, place + len(run)):
             said.say(_STREETS[run], place)
         elif small in _MEANINGS:
-            said.say(_MEANINGS[small], place)
+            if _MEANINGS[small] == "-":
+                said.say_names(small, range(place, place + len(small)), False)
+            else:
+                said.say(_MEANINGS[small], place)
         elif self.address and before == "." and self._is_spelt_in_address(small):
             said.say_names(small, range(place, place + len(small)), False)
         elif self._is_spelt(run, before, follows, shouting):
@@ -390,7 +391,8 @@ def _owner(run: str) -> str:
 
 
 def _is_spelt_small(letters: str) -> bool:
-    return letters in _SPELT_SMALL or (letters not in _SOUNDS and bool(_SMALL.match(letters)))
+    """Whether small letters are read one by one: two to five without a vowel, none of them three times in a row."""
+    return letters not in _SOUNDS and bool(_SMALL.match(letters))
 
 
 def _capitals(run: str) -> str:
