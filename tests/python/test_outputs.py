@@ -47,7 +47,7 @@ def injected(folder: Path, corpus: Path, rounds: int) -> Dict[str, List[str]]:  
 def test_interrupted_commands(tmp_path: Path, corpus: Path) -> None:  # noqa: F811
     """Every command that writes, each with a full disk, SIGKILL and SIGTERM at random writes: finds a file that is half
     written, a temporary one left behind, and an error that names another file."""
-    found = injected(tmp_path, corpus, 20 if "LABIAL_REQUIRE_ALL" in os.environ else 3)
+    found = injected(tmp_path, corpus, 10 if "LABIAL_REQUIRE_ALL" in os.environ else 3)
     assert {name.split(",")[0] for name in found} == set(COMMANDS) - {"check"}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
@@ -61,7 +61,7 @@ def test_commands_killed_at_any_moment(tmp_path: Path, corpus: Path) -> None:  #
     (tmp_path / "corpus").mkdir()
     for file in sorted(corpus.iterdir()):
         shutil.copy(file, tmp_path / "corpus")
-    rounds = os.environ.get("LABIAL_KILLS", "12")
+    rounds = os.environ.get("LABIAL_KILLS", "6")
     done = subprocess.run([sys.executable, HERE / "killed.py", tmp_path, rounds], capture_output=True, text=True,
                           check=False)
     assert done.returncode == 0, done.stderr
