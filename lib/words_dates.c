@@ -107,7 +107,12 @@ static unsigned phone_groups(const labial_words_place_t *here)
     const int is_area = here->code >= '2';
     groups_t groups;
     if (here->before == '+') {
-        groups = take_groups(&next, "-\0.\0 \0");
+        groups = take_groups(&next, "-\0 \0");
+        if (groups.digits < 8u) {
+            next = *here;
+            groups = take_groups(&next, ".\0");
+            groups.digits *= groups.count > 2u; /* two are a number and a fraction */
+        }
         if (groups.digits >= 8u && groups.digits <= MOST_DIGITS && (groups.count == 1u || groups.first <= 3u) &&
             !labial_words_is_inside(next.code))
             return groups.count;

@@ -54,8 +54,12 @@ static const char dates[] =
     "sept\0september\0oct\0october\0nov\0november\0dec\0december\0mon\0monday\0tue\0tuesday\0tues\0tuesday\0"
     "wed\0wednesday\0thu\0thursday\0thur\0thursday\0thurs\0thursday\0fri\0friday\0";
 
-/* Words behind which "Dr" is no drive and "St" no street, although they have a capital at a sentence's beginning. */
-static const char no_names[] = "the\0my\0our\0your\0his\0her\0their\0";
+/* Words that are no names although they have a capital at a sentence's beginning: "Dr" behind them is no drive, and "St"
+ * before them no saint. */
+static const char no_names[] =
+    "the\0my\0our\0your\0his\0her\0their\0he\0she\0it\0they\0we\0this\0that\0there\0what\0when\0where\0if\0in\0"
+    "on\0at\0to\0from\0by\0near\0and\0but\0so\0for\0with\0is\0are\0no\0yes\0hi\0hello\0thanks\0dear\0ask\0call\0"
+    "see\0st\0dr\0";
 
 static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
 
@@ -115,7 +119,6 @@ typedef struct {
     unsigned before; /* the character before it */
     int is_title;    /* a capital, and none behind it */
     int is_small;    /* no capital */
-    int is_behind_name;
 } run_t;
 
 static void say_letter(labial_words_reading_t *reading, labial_words_letter_t letter)
@@ -383,21 +386,19 @@ static unsigned after_month(labial_words_reading_t *reading, unsigned after, uns
     return AFTER_NOTHING;
 }
 
-void labial_words_keep_name(labial_words_reading_t *reading)
+/* Reads "St" and "Dr" behind a name, which mean street and drive unless another name follows: that takes them back. */
+static int read_street(labial_words_reading_t *reading, const run_t *run)
 {
-    reading->behind_name = reading->here.code == ' ' ? reading->here.characters + 1u : 0u;
-}
-
-/* "St" and "Dr" behind a name, where no other name follows: what they mean there, or null. */
-static const char *street(const labial_words_reading_t *reading, const run_t *run)
-{
-    labial_words_place_t next = reading->here;
-    const int found = run->is_title && run->is_behind_name ? find_run(run, "st\0dr\0", 1) : -1;
-    if (next.code == '.')
-        labial_words_advance(&next);
-    while (next.code == ' ')
-        labial_words_advance(&next);
-    return found < 0 || labial_words_is_capital(next.code) ? NULL : found == 0 ? "street" : "drive";
+    const unsigned first = reading->word->count;
+    const int found = run->is_title ? find_run(run, "st\0dr\0", 1) : -1;
+    if (found < 0)
+        return 0;
+    labial_words_say(reading, found == 0 ? "street" : "drive", SAID_PLAIN, run->letters[0].character);
+    labial_words_keep_tail(reading, first);
+    reading->context->after = (uint8_t)(AFTER_STREET + found);
+    if (reading->here.code == '.')
+        labial_words_advance(&reading->here);
+    return 1;
 }
 
 /* Reads a run that rules say otherwise than by its letters. */
@@ -457,11 +458,6 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         labial_words_say(reading, "out", SAID_PLAIN, character);
         return 1;
     }
-    list = street(reading, run);
-    if (list) {
-        labial_words_say(reading, list, SAID_PLAIN, character);
-        return 1;
-    }
     list = meanings[(run->letters[0].letter - 1u) % 26u];
     found = find_run(run, list, 2);
     if (found >= 0) {
@@ -483,8 +479,9 @@ void labial_words_read_letters(labial_words_reading_t *reading)
 {
     labial_words_context_t *const context = reading->context;
     labial_words_place_t next = reading->here;
-    const unsigned after = labial_words_forget(reading), shouting = context->shouting;
+    const unsigned after = labial_words_forget(reading), shouting = context->shouting, named = context->named;
     run_t run;
+    context->named = 0;
     labial_words_advance(&next);
     if (has_pointed(&next)) {
         read_pointed(reading, after);
@@ -493,11 +490,13 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER) && read_unit(reading, after))
         return;
     take_run(&reading->here, &run);
-    run.is_behind_name = run.letters[0].character + 1u == reading->behind_name;
-    if (run.count > 1u && (run.small & 1u) == 0u && find_run(&run, no_names, 1) < 0)
-        labial_words_keep_name(reading);
+    context->named = run.count > 1u && (run.small & 1u) == 0u && find_run(&run, no_names, 1) < 0;
+    if (context->named && (after == AFTER_STREET || after == AFTER_DRIVE)) {
+        labial_words_take_back(reading);
+        labial_words_say(reading, after == AFTER_STREET ? "saint" : "doctor", SAID_PLAIN, run.letters[0].character);
+    }
     context->shouting = 0;
-    if (read_rule(reading, &run, after, shouting))
+    if ((named && read_street(reading, &run)) || read_rule(reading, &run, after, shouting))
         return;
     if (run.is_title && find_run(&run, labial_words_months, 1) >= 0)
         context->after = (uint8_t)after_month(reading, after, run.letters[0].character);

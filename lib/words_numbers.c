@@ -263,7 +263,7 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
     } else if (takes_ordinal(here)) {
         say_number(reading, &number, ORDINAL, first.characters - 1u);
         reading->context->after = AFTER_NOTHING;
-        labial_words_keep_name(reading);
+        reading->context->named = 1;
         return;
     } else {
         say_number(reading, &number, CARDINAL, first.characters - 1u);
@@ -293,7 +293,7 @@ void labial_words_read_number(labial_words_reading_t *reading)
         labial_words_say(reading, "number", after == AFTER_NOS ? SAID_PLURAL : SAID_PLAIN, labial_words_here(reading));
     }
     context->after = AFTER_NUMBER;
-    context->tail = 0;
+    context->tail = context->named = 0;
     if (after != AFTER_UNIT)
         context->currency = 0;
     if (is_start && labial_words_read_special(reading, after))

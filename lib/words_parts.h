@@ -61,7 +61,9 @@ enum {
     AFTER_MONTH,
     AFTER_WITH, /* "w" of "w/" */
     AFTER_NO,   /* "No.", "Nos." */
-    AFTER_NOS
+    AFTER_NOS,
+    AFTER_STREET, /* "St", "Dr" behind a name */
+    AFTER_DRIVE
 };
 
 /* A place in a text. */
@@ -85,7 +87,6 @@ typedef struct {
     labial_words_place_t here;
     unsigned is_tail_here; /* what may be taken back is at the end of `word` */
     unsigned is_address;   /* a web address was recognised in this word */
-    unsigned behind_name;  /* where a word behind a name and a blank begins, 0 for none */
 } labial_words_reading_t;
 
 /* ---- Characters ------------------------------------------------------------------------------------------------- */
@@ -140,9 +141,6 @@ const char *labial_words_said_of(const char *list, unsigned sign);
  * letters of the list may be small. */
 int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step);
 int labial_words_is_listed(const char *letters, unsigned count, const char *list);
-
-/* Notes that a word ends here that may name a street: one with a capital, or an ordinal. */
-void labial_words_keep_name(labial_words_reading_t *reading);
 
 /* Reads letters from the current one on. */
 void labial_words_read_letters(labial_words_reading_t *reading);

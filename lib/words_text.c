@@ -313,7 +313,7 @@ static void read_sign(labial_words_reading_t *reading)
         return;
     }
     after = labial_words_forget(reading);
-    reading->context->tail = 0;
+    reading->context->tail = reading->context->named = 0;
     is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
     if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
         reading->context->after = AFTER_NUMBER;
@@ -373,6 +373,7 @@ static void read_next(labial_words_reading_t *reading, const labial_words_own_t 
         labial_words_advance(here);
     } else if (!labial_words_is_inside(here->before) && reads_own(reading, own)) {
         (void)labial_words_forget(reading);
+        context->named = 0;
         here->before = NO_CHARACTER;
     } else if (labial_words_is_latin(here->code)) {
         labial_words_read_letters(reading);

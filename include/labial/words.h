@@ -128,6 +128,7 @@ typedef struct {
     uint8_t currency; /* of a sum; or the number that a month may follow, or the unit that a smaller one may follow */
     uint8_t tail;     /* phonemes that the next word may drop */
     uint8_t shouting; /* the word before is in capitals and not spelt */
+    uint8_t named;    /* the word before may be the name of a street */
     uint8_t closing;  /* what ends the tag or stage direction that the text is in */
     uint8_t left;     /* words that it may still have */
 } labial_words_context_t;

@@ -280,10 +280,14 @@ TEST(words_know_those_before)
                   { "5", "_N:0 AH:0 M:0 B:0 ER:0 _F:0 AY:0 V:0", 2 },
                   { "6ft", "_S:0 IH:0 K:0 S:0 _F:1 IY:1 T:1", 0 },
                   { "2", "_T:0 UW:0", 0 },
-                  { "in", "_IH:0 N:0 CH:0 IH:0 Z:0", 0 } };
-    labial_words_context_t context = { 0, 0, 0, 0, 0, 0, 0 };
+                  { "in", "_IH:0 N:0 CH:0 IH:0 Z:0", 0 },
+                  { "Elm", "_EH:0 L:1 M:2", 0 },
+                  { "St.", "_S:0 T:0 R:0 IY:0 T:0", 0 },
+                  { "Louis", "_S:0 EY:0 N:0 T:0 _L:0 UW:2 IY:3 Z:4", 5 } };
+    labial_words_context_t context;
     labial_word_t word;
     unsigned i;
+    memset(&context, 0, sizeof context);
     for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         assert_int_equal(labial_words_read_next(&words_en, NULL, &context, cases[i].text, strlen(cases[i].text), &word),
                          LABIAL_OK);

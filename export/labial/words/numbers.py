@@ -33,7 +33,7 @@ _ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})" + END)
 _DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
 _PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])"
                     r"|[2-9][0-9]{2}(?P<sign>[. ])[0-9]{3}(?P=sign)[0-9]{4}(?!(?P=sign)?[0-9])(?![A-Za-z\1])")
-_GROUPS = re.compile(r"[0-9]+(?:[-. ][0-9]+)*")
+_GROUPS = (re.compile(r"[0-9]+(?:[- ][0-9]+)*"), re.compile(r"[0-9]+(?:\.[0-9]+){2,}"))
 _AREA = re.compile(r"[2-9][0-9]{2}(?=\))")
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
 _SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
@@ -118,7 +118,7 @@ def read_number(said: Said, place: int) -> int:
         said.say("numbers" if said.context.after == "nos" else "number", place)
     if said.context.after != "unit":
         said.context.mark = ""
-    said.context.after, said.context.tail = "number", 0
+    said.context.after, said.context.tail, said.context.named = "number", 0, False
     for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
         end = rule(said, place, is_counted)
         if end is not None:
@@ -150,7 +150,7 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
         if ordinal:
             say_ordinal(said, digits, place)
             said.context.after = ""
-            said.keep_name(ordinal.end())
+            said.context.named = True
             return ordinal.end()
         if is_start and not said.context.mark and len(digits) <= 2 and 1 <= int(digits) <= 31:
             said.say_tail(" ".join(cardinal(digits)), place)
@@ -213,9 +213,8 @@ def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
 
 
 def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
-    found = _GROUPS.match(said.simple, place) if said.at(place - 1) == "+" else None
-    if not found or not _is_abroad(found[0]) or signs.is_inside(said.at(found.end())):
-        found = _PHONE.match(said.simple, place)
+    found = _abroad(said, place) if said.at(place - 1) == "+" else None
+    found = found or _PHONE.match(said.simple, place)
     if not found and said.at(place - 1) == "(":
         found = _AREA.match(said.simple, place)
     if not found:
@@ -225,10 +224,15 @@ def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
     return found.end()
 
 
-def _is_abroad(groups: str) -> bool:
-    """Whether groups of digits behind a plus are the number of a telephone."""
-    digits = sum(map(str.isdigit, groups))
-    return 8 <= digits <= _MOST_DIGITS and (digits == len(groups) or not groups[:4].isdigit())
+def _abroad(said: Said, place: int) -> Optional[re.Match[str]]:
+    """The number of a telephone behind a plus, 8 to 15 digits; two groups with a point are a number and a fraction."""
+    for pattern in _GROUPS:
+        found = pattern.match(said.simple, place)
+        digits = sum(map(str.isdigit, found[0])) if found else 0
+        if found and digits >= 8:
+            is_abroad = digits <= _MOST_DIGITS and (digits == len(found[0]) or not found[0][:4].isdigit())
+            return found if is_abroad and not signs.is_inside(said.at(found.end())) else None
+    return None
 
 
 def _read_time(said: Said, place: int, _: bool) -> Optional[int]:

@@ -23,7 +23,8 @@ _PLURALS = {"h": "aitches", "s": "esses", "x": "exes"}
 class Context:
     """What the words so far mean for the next one: all as at the beginning of a text."""
 
-    #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "no" or "nos", "with".
+    #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "no" or "nos", "with",
+    #: "street" or "drive".
     after: str = ""
     currency: int = 0  #: of a sum
     day: int = 0  #: the number that `tail` says, which a month makes an ordinal
@@ -31,6 +32,7 @@ class Context:
     tail: int = 0  #: phonemes that the next word may take back: "dollars" before "million", "five" before "March"
     is_old: bool = False  #: these are of an earlier text
     dropped: int = 0  #: phonemes that the text now being read took from the one before
+    named: bool = False  #: the last word may be the name of a street
     shouting: bool = False  #: the last word was in capitals, but not spelt
     closing: str = ""  #: of a tag or stage direction that the text is in
     left: int = 0  #: words that it may still have
@@ -43,16 +45,11 @@ class Said:
         self.tables, self.characters, self.context = tables, characters, context
         self.simple = "".join(item.plain for item in characters)
         self.phonemes: List[Tuple[int, int, bool]] = []
-        self.behind_name = -1  #: where a word behind a name and a blank begins
         self.foreign = False  #: there was a letter of another script
 
     def at(self, place: int) -> str:
         """The simple character of a place; blanks around the text."""
         return self.simple[place] if 0 <= place < len(self.simple) else BLANK
-
-    def keep_name(self, end: int) -> None:
-        """Notes that a word ends here that may name a street: one with a capital, or an ordinal."""
-        self.behind_name = self.characters[end].place + 1 if self.at(end) == BLANK and end < len(self.simple) else -1
 
     def add(self, phoneme: int, place: int, first: bool) -> None:
         """Adds a phoneme, unless there is no room."""

@@ -38,9 +38,11 @@ airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;ab
 uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
-#: The same behind a name, unless another name follows; and words that are no names at a sentence's beginning.
+#: What they mean behind a name, unless another one follows; and words that are no names, at a sentence's beginning.
 _STREETS = {"St": "street", "Dr": "drive"}
-_NO_NAMES = frozenset("the my our your his her their".split())
+_SAINTS = {"street": "saint", "drive": "doctor"}
+_NO_NAMES = frozenset("""the my our your his her their he she it they we this that there what when where if in on at to from by near and
+    but so for with is are no yes hi hello thanks dear ask call see st dr""".split())
 _DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
                   "January February March April June July August September September October November December Monday "
                   "Tuesday Tuesday Wednesday Thursday Thursday Thursday Friday".lower().split()))
@@ -96,7 +98,6 @@ _ENDINGS, _LONGEST_VERB = ("s", "es", "ing"), 12
 _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours theirs hers towards besides".split())
 
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
-_NAME = re.compile(r"\.? *[A-Z]")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 
@@ -199,7 +200,7 @@ class _Reader:
         if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
             return self._open(")" if here == "(" else "*", place)
         after = self._forget()
-        self.context.tail = 0
+        self.context.tail, self.context.named = 0, False
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
             return self._read_degrees(place, after)
@@ -258,8 +259,8 @@ class _Reader:
     # ---- Letters
 
     def _read_letters(self, place: int) -> int:
-        before = self.said.at(place - 1)
-        after = self._forget()
+        before, named = self.said.at(place - 1), self.context.named
+        after, self.context.named = self._forget(), False
         pointed = _POINTED.match(self.simple, place)
         if pointed:
             return self._read_pointed(pointed[0], place, after)
@@ -272,13 +273,13 @@ class _Reader:
         run = _CAMEL.split(found[0])[0][:LONGEST]
         while run.endswith("'"):
             run = run[:-1]
-        self._read_run(run, place, after, before)
+        self._read_run(run, place, after, before, named)
         place += len(run)
         if self.context.after == "with":
             return place + 1
         if run.lower() in ("am", "pm") and after in ("one", "number", "time"):
             return numbers.read_range(self.said, place)
-        return place + (run in (*_DATES, "No", "Nos") and self.said.at(place) == ".")
+        return place + ((run in (*_DATES, "No", "Nos") or self.context.after in _SAINTS) and self.said.at(place) == ".")
 
     def _read_pointed(self, text: str, place: int, after: str) -> int:
         meaning = {"e.g": "for example", "i.e": "that is"}.get(text[:3].lower())
@@ -306,14 +307,18 @@ class _Reader:
             return end + 1
         return numbers.read_range(self.said, end)
 
-    def _read_run(self, run: str, place: int, after: str, before: str) -> None:
+    def _read_run(self, run: str, place: int, after: str, before: str, named: bool) -> None:
         said, context, small = self.said, self.context, run.lower()
         follows = said.at(place + len(run))
         shouting, context.shouting = context.shouting, False
-        is_behind_name = said.characters[place].place == said.behind_name
-        if run[0].isupper() and len(run) > 1 and small not in _NO_NAMES:
-            said.keep_name(place + len(run))
-        if small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
+        context.named = run[0].isupper() and len(run) > 1 and small not in _NO_NAMES
+        if context.named and after in _SAINTS:
+            said.take_back()
+            said.say(_SAINTS[after], place)
+        if named and run in _STREETS:
+            said.say_tail(_STREETS[run], place)
+            context.after = _STREETS[run]
+        elif small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
             said.take_back() if after == "time" else None
             said.say_names(small, range(place, place + 2), False)
         elif small == "o'clock" and after == "time":
@@ -335,8 +340,6 @@ class _Reader:
             context.after = "with"
         elif small == "o" and after == "with":
             said.say("out", place)
-        elif run in _STREETS and is_behind_name and not _NAME.match(self.simple, place + len(run)):
-            said.say(_STREETS[run], place)
         elif small in _MEANINGS:
             if _MEANINGS[small] == "-":
                 said.say_names(small, range(place, place + len(small)), False)
