@@ -41,8 +41,8 @@ haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk
 #: What they mean behind a name, unless another one follows; and words that are no names, at a sentence's beginning.
 _STREETS = {"St": "street", "Dr": "drive"}
 _SAINTS = {"street": "saint", "drive": "doctor"}
-_NO_NAMES = frozenset("""the my our your his her their he she it they we this that there what when where if in on at to from by near and
-    but so for with is are no yes hi hello thanks dear ask call see st dr""".split())
+_NO_NAMES = frozenset("""the my our your his her their he she it they we this that there what when where if in on at
+    to from by near and but so for with is are no yes hi hello thanks dear ask call see st dr""".split())
 _DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
                   "January February March April June July August September September October November December Monday "
                   "Tuesday Tuesday Wednesday Thursday Thursday Thursday Friday".lower().split()))
@@ -73,7 +73,8 @@ _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR O
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
     ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA""".split())
 #: Small letters without a vowel that are not read one by one: sounds and parts of words.
-_SOUNDS = frozenset("hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th nd".split())
+_SOUNDS = frozenset("""hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th
+    nd""".split())
 _SMALL = re.compile(r"(?!.*(.)\1\1)[b-df-hj-np-tv-xz]{2,5}$")
 #: Words unless the word before is not in capitals.
 _SHOUTED = frozenset(["AM", "IT", "US", "WHO"])
