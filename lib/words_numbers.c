@@ -424,6 +424,7 @@ void labial_words_read_sum(labial_words_reading_t *reading)
 {
     unsigned character = labial_words_here(reading);
     int is_upper = 0;
+    reading->context->named = 0;
     reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
     labial_words_advance(&reading->here);
     while (read_amount(reading, character, is_upper)) {

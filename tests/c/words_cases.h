@@ -959,6 +959,7 @@ static const struct {
     { "Elm St., Foo", "_EH:0 L:1 M:2 _S:4 T:4 R:4 IY:4 T:4 _F:9 UW:10" },
     { "Elm St Dr Foo", "_EH:0 L:1 M:2 _S:4 T:4 R:4 IY:4 T:4 _D:7 AA:7 K:7 T:7 ER:7 _F:10 UW:11" },
     { "Elm St. $5", "_EH:0 L:1 M:2 _S:4 T:4 R:4 IY:4 T:4 _F:8 AY:8 V:8 _D:9 AA:9 L:9 ER:9 Z:9" },
+    { "Elm $5 St", "_EH:0 L:1 M:2 _F:4 AY:4 V:4 _D:5 AA:5 L:5 ER:5 Z:5 _S:7 EY:7 N:7 T:7" },
     { "Elm St. a Foo", "_EH:0 L:1 M:2 _S:4 T:4 R:4 IY:4 T:4 _AH:8 _F:10 UW:11" },
     { "Elm. Dr x", "_EH:0 L:1 M:2 _D:5 AA:5 K:5 T:5 ER:5 _EH:8 K:8 S:8" },
     { "iPhone St.", "_AY:0 _F:1 OW:3 N:4 _S:7 T:7 R:7 IY:7 T:7" },

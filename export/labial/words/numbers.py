@@ -58,7 +58,7 @@ def currency_of(sign: str) -> int:
 
 def read_sum(said: Said, place: int) -> int:
     """Reads a sign of money and its number; returns the place behind them."""
-    said.context.currency = _SIGNS.index(said.simple[place])
+    said.context.currency, said.context.named = _SIGNS.index(said.simple[place]), False
     end, is_lower = _read_amount(said, place + 1, place, False)
     while is_lower:
         end, is_lower = _read_amount(said, end, end, True)
