@@ -32,11 +32,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static const labial_words_entry_t entry = { "go", sounds, sizeof sounds };
     static const labial_words_own_t own = { &entry, 1 };
     labial_words_t words;
-    labial_words_context_t context = { 0, 0, 0, 0, 0, 0, 0 };
+    labial_words_context_t context;
     unsigned before = 0;
     uint32_t start = 0;
     uint64_t sum = 0;
     const int32_t offset = size > 0 ? (int8_t)data[0] : 0;
+    memset(&context, 0, sizeof context);
     REQUIRE(labial_words_init(&words, &words_en, &own, offset) == LABIAL_OK);
     data += size > 0;
     size -= size > 0;
