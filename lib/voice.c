@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "fade.h"
-#include "fixed.h"
 
 /* Places that are used at most. */
 #define PLACES_MAX 0x1000000u

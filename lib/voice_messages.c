@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-#include "fixed.h"
-
 /* Microseconds by which rounding may move a message, and the longest time that an item lasts. */
 #define MESSAGE_ROUNDING UINT64_C(20000)
 #define ITEM_LONGEST (UINT64_C(1000) * LABIAL_DURATION_MAX)

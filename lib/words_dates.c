@@ -111,7 +111,8 @@ static unsigned phone_groups(const labial_words_place_t *here)
         if (groups.digits < 8u) {
             next = *here;
             groups = take_groups(&next, ".\0");
-            groups.digits *= groups.count > 2u; /* two are a number and a fraction */
+            if (groups.count == 2u) /* a number and a fraction */
+                groups.digits = 0;
         }
         if (groups.digits >= 8u && groups.digits <= MOST_DIGITS && (groups.count == 1u || groups.first <= 3u) &&
             !labial_words_is_inside(next.code))

@@ -183,7 +183,7 @@ void labial_words_read_fraction(labial_words_reading_t *reading)
     labial_words_say_digits(reading, 0);
 }
 
-/* Moves to the number, which may be a sum, that a number here reaches up to; whether there is one. */
+/* Moves from the sign of a range behind a number to its upper end, a number or a sum; whether there is one. */
 static int takes_range(labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
@@ -349,8 +349,8 @@ static unsigned take_scale(labial_words_place_t *here)
     return THOUSAND + i;
 }
 
-/* Reads a sum without its sign, at whose character it is said; `is_upper` behind "to". Returns whether a number without
- * a sign follows up to which it reaches: "$5-10". */
+/* Reads an amount of the context's currency, said at `character`; `is_upper` behind "to". Returns whether the upper end
+ * of a range follows without a sign of its own, as 10 does in "$5-10". */
 static int read_amount(labial_words_reading_t *reading, unsigned character, int is_upper)
 {
     labial_words_context_t *context = reading->context;

@@ -193,6 +193,7 @@ TEST(questions_are_those_of_the_format)
         unsigned question;
         const char *text, *answers;
     } cases[] = {
+        /* Capitals, since small letters without a vowel would be spelt. */
         { 0 * 32 + 20, "Ttpp", "_D:0 B:1 B:2 D:3" },      /* t is just before it */
         { 3 * 32 + 20, "tpppp", "_D:0 D:1 D:2 D:3 B:4" }, /* four before */
         { 4 * 32 + 20, "Ptt", "_B:0 B:1 D:2" },           /* just behind */

@@ -66,9 +66,10 @@ def read_sum(said: Said, place: int) -> int:
 
 
 def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, bool]:
-    """Reads a sum without its sign, said at a place; `is_upper` behind "to".
+    """Reads an amount of the context's currency, said at `at`; `is_upper` behind "to".
 
-    Returns the place behind it, and whether a number without a sign stands there up to which it reaches: "$5-10".
+    Returns the place behind it, and whether the upper end of a range stands there without a sign of its own, as 10 does
+    in "$5-10".
     """
     currency, name = said.context.currency, CURRENCIES[said.context.currency]
     whole = _WHOLE.match(said.simple, place)
