@@ -80,9 +80,9 @@ int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity)
     unsigned i;
     int result = LABIAL_OK;
     if (identity) {
-        for (i = voice->utterance_count; i-- > 0u;)
-            if (voice->utterances[i].identity == identity)
-                return (int)i;
+        for (i = voice->utterance_count; i > 0u; i--)
+            if (voice->utterances[i - 1u].identity == identity)
+                return (int)i - 1;
         if (labial_voice_is_over(voice, identity))
             return -1;
     }

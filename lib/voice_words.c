@@ -90,6 +90,9 @@ static int finish_word(labial_voice_t *voice)
     if (size == 0u)
         return 0;
     (void)labial_words_pronounce(&plan->words, own_of(voice, plan->letters, size));
+    /* Where there are bytes, there is a character. */
+    /*@ assert characters > 0; */
+    LABIAL_CHECK(characters > 0u);
     if (plan->until != plan->ends[characters - 1u] ||
         labial_words_push_characters(&plan->words, plan->letters, size, plan->begin, plan->ends, characters) !=
             LABIAL_OK)
@@ -108,6 +111,9 @@ static void append_character(labial_voice_plan_t *plan, const char *text, unsign
         return;
     memcpy(plan->letters + plan->size, text, bytes);
     plan->size = (uint8_t)(plan->size + bytes);
+    /* Each character has a byte at least. */
+    /*@ assert plan->characters < 255; */
+    LABIAL_CHECK(plan->characters < LABIAL_WORDS_CHARACTERS);
     plan->ends[plan->characters++] = plan->until;
 }
 
@@ -124,6 +130,9 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
         for (i = 0; i < item->size; i += character_bytes(text + i, item->size - i))
             count++;
         while (plan->byte < item->size) {
+            /* The item has a byte, and so a character. */
+            /*@ assert count > 0; */
+            LABIAL_CHECK(count > 0u);
             const unsigned bytes = character_bytes(text + plan->byte, item->size - plan->byte);
             const char *const character = text + plan->byte;
             const uint32_t begin = item->start + (uint32_t)((uint64_t)length * plan->point / count);
