@@ -1,7 +1,6 @@
 /*
- * The items of a voice, and its plan: of up to four items in one utterance and one in another, of any kinds, texts and times, all
- * of one place or all of two; at any point of the plan; with stand-ins for words and calls, which give any of their
- * results.
+ * The items of a voice, its plan and its words: up to four items in one utterance and one in another, of any kind, text
+ * and time, all of one place or all of two; with stand-ins for what pronounces words, which gives any of its results.
  */
 #include "voice_parts.h"
 

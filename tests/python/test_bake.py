@@ -111,7 +111,7 @@ def test_committed_headers_are_what_the_command_writes(tmp_path: Path) -> None:
     assert (tmp_path / "labial_player.h").read_bytes() == PLAYER.read_bytes()
 
 
-@pytest.mark.parametrize("language", ["c", "c++"])
+@pytest.mark.parametrize("language", ["c", pytest.param("c++", marks=pytest.mark.slow)])
 def test_both_kinds_play_what_the_library_computes(tmp_path: Path, language: str) -> None:
     """The phonemes through the stream and its rig, the track through the player: the same pulses, frame by frame, but
     for what a byte and the exported tables round."""
@@ -146,6 +146,7 @@ def test_jaw_closes_where_lips_do_and_moves_with_the_sound() -> None:
         assert max(moved_away[a:b].min() for a, b, label in spans if label in ("P", "B", "M")) > 40
 
 
+@pytest.mark.slow
 def test_sound_is_aligned_first(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """The text of the wrong option, times in other units: the motion of the sound itself is that of its timings."""
     for package in ("pocketsphinx", "soundfile", "soxr"):

@@ -388,6 +388,7 @@ def test_a_model_outdates_its_records(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(before)
 
 
+@pytest.mark.slow
 def test_measured_figures_take_the_place_of_the_baselines() -> None:
     # Catches a bench that compares pages with an old baseline, and figures of another compiler taken for changes.
     measured = baseline.read(SOURCE / "bench" / "baseline.json")

@@ -211,7 +211,7 @@ def test_other_limits_follow_the_reference(
 
 
 @needs_runtime
-@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(1, 6))])
 def test_library_follows_the_reference(method: str, seed: int) -> None:
     """At most one FAP unit anywhere and RMS 0.25: any wrong decision or overflow is far beyond."""

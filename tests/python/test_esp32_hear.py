@@ -171,6 +171,7 @@ def in_step(speaker: Loudspeaker, log: List[Tuple[int, int, Faps]], frames: List
     return compared
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rate", "packet", "channels"),
                          [(24000, 60, 1), (16000, 20, 2), (48000, 120, 1), (44100, 30, 1)])
 def test_lips_are_in_step_with_the_loudspeaker(lips: ctypes.CDLL, rate: int, packet: int, channels: int) -> None:
@@ -337,6 +338,7 @@ def test_nothing_moves_before_the_begin(lips: ctypes.CDLL) -> None:
     assert shown(lips, 2000 * MS) == (0, [0] * 13)
 
 
+@pytest.mark.slow
 def test_threads(lips: ctypes.CDLL) -> None:
     """Catches frames that are read while they are written: what is shown from another thread is always a frame that was
     heard, or on the way from or to the neutral face."""
@@ -379,6 +381,7 @@ def value(board: ctypes.CDLL, name: str, kind: Any = ctypes.c_int) -> Any:
     return kind.in_dll(board, name)
 
 
+@pytest.mark.slow
 def test_the_renderer_holds_sound_back(board: ctypes.CDLL) -> None:
     """Catches sound that is lost, doubled or played before its lips are known, and an end that is kept back."""
     rate, samples = 16000, np.stack([voice(1.0), voice(1.0, seed=1)], axis=1)

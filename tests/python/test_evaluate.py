@@ -64,6 +64,7 @@ def test_every_method_end_to_end(corpus) -> None:
     assert len(outcome.split.training) == 14 and len(outcome.split.test) == 4
 
 
+@pytest.mark.slow
 def test_the_trained_rows_decode_as_they_say(corpus) -> None:
     """The paper's row unit by unit, as it is published; Labial's as the run-time does."""
     material = utterances(corpus, SPEECH, 50)
@@ -90,6 +91,7 @@ def test_the_same_bytes_for_any_number_of_jobs(folder, tmp_path, capsys) -> None
     assert "processor time per split" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_held_out_words_from_the_command_line(folder, tmp_path) -> None:
     arguments = ["evaluate", str(folder), "--splits", "1", "--methods", "mean,steps", "--quiet", "--jobs", "1",
                  "--hold-out-words", "beta, gamma", "-o", str(tmp_path)]  # fmt: skip
@@ -288,6 +290,7 @@ def test_the_setting_of_least_error_over_all_folds_is_chosen() -> None:
     assert choose(part, [40.0, -3.0, 2.0, 7.0], lambda _: lambda off: lambda given: ramp(given) + off) == 2.0
 
 
+@pytest.mark.slow
 def test_methods_share_the_cells_of_their_codebooks(monkeypatch) -> None:
     # Catches a model that changes because another was trained before it, and cells that are computed twice.
     calls = []

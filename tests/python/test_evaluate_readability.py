@@ -78,6 +78,7 @@ def test_another_words_motion_is_read_as_that_word() -> None:
     assert reader.measure([item.human for item in wrong])["readability"] == 0.0
 
 
+@pytest.mark.slow
 def test_the_residual_is_the_humans_variation_within_words() -> None:
     """Catches a residual of another size, or with the words in it: motion that is each word's true mean is read as
     often with it as people are, neither always, as without, nor at chance."""
@@ -94,6 +95,7 @@ def test_the_residual_is_the_humans_variation_within_words() -> None:
     assert again.measure(clean) == perfect  # drawn by the seed
 
 
+@pytest.mark.slow
 def test_unseen_words_are_learned_from_other_utterances_than_those_read() -> None:
     """Catches a reader that was trained on the tokens it reads: each utterance's motion here tells which utterance it
     is, and nothing about the word, so that who has seen it reads it, and nobody else does."""

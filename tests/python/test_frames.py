@@ -156,6 +156,7 @@ def test_rates_are_the_same_in_parts(wanted: int) -> None:
     assert not list(at_rate([], 0, 50, wanted)) and not count_at(0, 50, wanted)
 
 
+@pytest.mark.slow
 def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
     """Would catch a head or a number that begins anew with each part."""
     model = load("speech_en")

@@ -82,7 +82,7 @@ def test_names_are_whole_entries() -> None:
             emit.names_source(replace(exported, names=bad))
 
 
-@pytest.mark.parametrize("method", ["paper", "labial"])
+@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
 def test_generated_code_is_clean_and_names_are_found(tmp_path: Path, method: str) -> None:
     """Strict warnings are errors; labels, aliases and labels from outside ASCII must survive as C strings."""
     model = quantise(random_model(2, method), "some_model")

@@ -293,6 +293,7 @@ def talk_frames() -> np.ndarray:
     return delivered(synthesise(ExportedTables(quantise(model, "bundled")), phonemes))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
     """At reset and when the button is pressed: the module's command, then the track's pulses, one every 20 ms, from the

@@ -53,6 +53,7 @@ def test_find_package(installed: Path, tmp_path: Path) -> None:
     run(tmp_path / "build" / "program")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("asked", "complaint"), [
     ("labial 99.1 REQUIRED", "99.1"), ("labial REQUIRED COMPONENTS french", "french")])  # fmt: skip
 def test_find_package_refuses(installed: Path, tmp_path: Path, asked: str, complaint: str) -> None:

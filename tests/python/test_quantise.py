@@ -206,7 +206,7 @@ def test_means_that_pull_too_far_lose_weight(feature: int) -> None:
     np.testing.assert_allclose(found[rest, 3] / found[rest, 0], others[rest, 3] / others[rest, 0], rtol=1 / 8)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", [*range(5), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(5, 20))])
 def test_wild_models_are_brought_within_all_bounds_together(seed: int) -> None:
     """Precisions over nine decades and any means: each rule by itself could push a state beyond another's bound."""
     model = random_model(seed)

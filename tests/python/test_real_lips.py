@@ -231,6 +231,7 @@ def test_the_clips_are_complete(groups: Tuple[Group, Group]) -> None:
         assert loud[clip.speech].mean() > loud[~clip.speech].mean() + 1.0
 
 
+@pytest.mark.slow
 def test_bundled_networks_are_nearer_to_real_lips_than_loudness(groups: Tuple[Group, Group]) -> None:
     """Catches sound and lips that are out of step, and lips upside down: 100 ms later the correlation falls by a
     third."""

@@ -253,6 +253,7 @@ def test_absurd_numbers_of_a_rig(tmp_path: Path, capsys: pytest.CaptureFixture, 
     assert said.startswith(f"labial: {path}: output.jaw.") and said.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_long_silences_are_split(tmp_path: Path) -> None:
     """Silences and gaps of hours; another phoneme of such a length is named with its file and line."""
     path = tmp_path / "night.lab"

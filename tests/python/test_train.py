@@ -270,6 +270,7 @@ def test_labels_and_corpora_that_cannot_be_used(corpus):
         train([strange], method="paper", **OPTIONS)
 
 
+@pytest.mark.slow
 def test_blocks_do_not_change_the_model(corpus, models, monkeypatch):
     """Catches sums whose last bit depends on how many frames are taken in at a time."""
     taken = []

@@ -128,6 +128,7 @@ def costs(chains: Chains, stride: int, target: np.ndarray, path: np.ndarray) -> 
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", BUNDLED)
 @pytest.mark.parametrize("width", [SEARCHED, 64])
 def test_with_a_long_lag_units_are_searched_as_wholes(name: str, width: int) -> None:
