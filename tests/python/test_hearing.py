@@ -267,7 +267,8 @@ MODELS = {
 
 
 @pytest.mark.parametrize("name", [
-    "large", "least", "widest", *(pytest.param(name, marks=pytest.mark.slow) for name in ("small", "without delay", "deepest")),
+    "large", "least", "widest",
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("small", "without delay", "deepest")),
 ])  # fmt: skip
 def test_any_model_gives_the_exporters_bits_in_c(tmp_path: Path, name: str) -> None:
     """Catches sizes that the library does not take from the model, and tables that are written wrong."""
