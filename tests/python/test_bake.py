@@ -283,10 +283,10 @@ int main(void)
 
 @pytest.mark.parametrize(("parts", "begins"), [
     ("pauses", [0, 2.24, 6.2]),  # in the middle of a short pause, .3 s before the end of a long one
-    ("5", [0, 2.24, 6.2]),  # 6.2 s do not fit, and then not 5.5 either
-    ("6.5", [0, 6.2]),
+    pytest.param("5", [0, 2.24, 6.2], marks=pytest.mark.slow),  # 6.2 s do not fit, and then not 5.5 either
+    pytest.param("6.5", [0, 6.2], marks=pytest.mark.slow),
     ("2", [0, 2.0, 2.24, 4.24, 6.2]),  # has to be cut twice where there is no pause
-    ("60", [0]),
+    pytest.param("60", [0], marks=pytest.mark.slow),
 ])  # fmt: skip
 def test_parts_are_the_track_cut_in_pauses(parts: str, begins: List[float], tmp_path: Path, capsys) -> None:
     """Catches a frame that is lost or played twice at a cut, cuts within speech, and parts that are too long. The track

@@ -95,7 +95,7 @@ def test_what_has_no_frames_is_refused():
 Pairs = List[Tuple[int, int]]
 
 
-@pytest.fixture(scope="module", params=["speech_en", "laughter_synthetic"])
+@pytest.fixture(scope="module", params=["speech_en", pytest.param("laughter_synthetic", marks=pytest.mark.slow)])
 def float_tables(request: pytest.FixtureRequest) -> FloatTables:
     return FloatTables(load(request.param))
 

@@ -237,6 +237,7 @@ def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
@@ -312,6 +313,7 @@ def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
     assert [time for time, _ in talking] == due
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
     """The library on an ESP32: servo after servo has its first pulse; then every frame is on the wire when its sound is
@@ -344,6 +346,7 @@ def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
     assert np.abs(ticks[second + 20:second + count, 1:] - wanted[20:, 1:]).max() <= 1.5
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
     """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the first period on; 0 where lips touch,
