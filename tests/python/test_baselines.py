@@ -166,6 +166,7 @@ def test_ridge_solves_the_weighted_normal_equations() -> None:
     np.testing.assert_allclose(ridge.solve(equations, penalty), np.linalg.lstsq(root, target, rcond=None)[0], atol=1e-6)
 
 
+@pytest.mark.slow
 def test_hmm_synthesis_recovers_motion_within_phonemes() -> None:
     # Blurred steps: the first and last states of a phoneme lean on its neighbours.
     fitted = hmm.fit(training(blurred, 60))

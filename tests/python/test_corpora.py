@@ -369,6 +369,7 @@ def test_archives_that_cannot_be_read(tmp_path, monkeypatch):
     fails(lambda: read_corpus(tmp_path), archive, "damaged")
 
 
+@pytest.mark.slow
 def test_grid():
     """Catches whatever a corpus of real size and origin holds that the small files above do not."""
     episodes = read_corpus(SOURCE / "export" / "corpora" / "grid_s1")

@@ -419,6 +419,7 @@ def test_the_renderer_holds_sound_back(board: ctypes.CDLL) -> None:
     assert played.raw[: size.value] == data + data[:640], "less than the delay is played after a while"
 
 
+@pytest.mark.slow
 def test_the_servo_follows(board: ctypes.CDLL) -> None:
     """Catches pulses outside the servo's, those that it cannot follow, and a duty of another resolution."""
     samples = voice(1.0)

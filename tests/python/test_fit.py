@@ -126,7 +126,7 @@ def test_a_mouth_that_is_open_at_rest_is_told() -> None:
 
 
 @needs_runtime
-@pytest.mark.parametrize("version", [0, 1])
+@pytest.mark.parametrize("version", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_vrm(tmp_path: Path, version: int, capsys: pytest.CaptureFixture[str]) -> None:
     """The expressions of either version are the shapes; VRM 0 faces the other way, and weighs in percent."""
     vertices, triangles, shapes = made_head(mouth="vrm")

@@ -45,6 +45,7 @@ def trains(episode):
     return [train for train in result if train]
 
 
+@pytest.mark.slow
 def test_every_phoneme_occurs_often_enough_to_train(episodes):
     """Catches a phoneme that the generator all but forgets."""
     counts = defaultdict(int)

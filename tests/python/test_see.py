@@ -136,7 +136,7 @@ def test_times_that_are_no_grid_are_refused(given: Path, capsys) -> None:
     assert "a: its times are too uneven: 4 frames" in capsys.readouterr().err and not (given / "a.html").exists()
 
 
-@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("suffix", ["png", *(pytest.param(name, marks=pytest.mark.slow) for name in ("svg", "pdf"))])
 def test_plot_writes_the_asked_format(given: Path, suffix: str) -> None:
     pytest.importorskip("matplotlib")
     out = given / f"out.{suffix}"

@@ -78,7 +78,7 @@ def drawn(seed: int) -> List[List[Any]]:
     return [*steps, ["plays", now, now + 1.5, 0.02]]
 
 
-@pytest.mark.parametrize("first", [0, 10, 20])
+@pytest.mark.parametrize("first", [0, *(pytest.param(first, marks=pytest.mark.slow) for first in (10, 20))])
 def test_sessions_that_are_drawn(first: int) -> None:
     """Ten sessions each."""
     for seed in range(first, first + 10):
