@@ -18,6 +18,16 @@
 
 /* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
+/* The utterances before `position` end at `origin` at the latest. */
+static void end_before(labial_voice_t *voice, unsigned position, int64_t origin)
+{
+    unsigned i;
+    for (i = 0; i < position; i++)
+        if (voice->utterances[i].limit > origin)
+            voice->utterances[i].limit = origin;
+    voice->changed = voice->stale = 1;
+}
+
 /* Appends an utterance, unless there are as many as there may be. One that nothing was told of gives its place up; what
  * is queued behind it is then queued as it was. */
 static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t identity, int is_queued)
@@ -30,10 +40,9 @@ static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t iden
             is_queued &= utterance->queued;
         } else if (voice->utterance_count >= LABIAL_VOICE_UTTERANCES) {
             return LABIAL_ERROR_FULL;
-        } else {
-            utterance->limit = origin;
         }
     }
+    end_before(voice, voice->utterance_count, origin);
     utterance = voice->utterances + voice->utterance_count++;
     memset(utterance, 0, sizeof *utterance);
     utterance->origin = origin;
@@ -43,8 +52,17 @@ static int append_utterance(labial_voice_t *voice, int64_t origin, uint32_t iden
     utterance->kind = LABIAL_VOICE_NO_KIND;
     utterance->serial = ++voice->serial;
     utterance->queued = (uint8_t)is_queued;
-    voice->changed = voice->stale = 1;
     return LABIAL_OK;
+}
+
+/* The position of the utterance of an identity behind 0; -1 without one. */
+static int position_of(const labial_voice_t *voice, uint32_t identity)
+{
+    unsigned i;
+    for (i = voice->utterance_count; i > 0u; i--)
+        if (voice->utterances[i - 1u].identity == identity)
+            return (int)i - 1;
+    return -1;
 }
 
 /* The next utterance behind all others. */
@@ -67,36 +85,48 @@ void labial_voice_requeue(labial_voice_t *voice, unsigned position)
     for (; position + 1u < voice->utterance_count; position++) {
         labial_voice_utterance_t *const utterance = voice->utterances + position;
         const int64_t end = labial_voice_end(voice, position);
-        if (!utterance[1].queued || utterance[1].origin <= now || end <= utterance[1].origin)
+        if (!utterance[1].queued || utterance[1].origin <= now || end <= utterance[1].origin ||
+            utterance[1].limit <= utterance[1].origin)
             return;
         utterance->limit = utterance[1].origin = end;
         voice->stale = 1;
     }
 }
 
-int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity)
+int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t places)
 {
-    labial_voice_utterance_t *last;
-    unsigned i;
+    labial_voice_utterance_t *last = voice->utterances + voice->utterance_count - 1u;
     int result = LABIAL_OK;
     if (identity) {
-        for (i = voice->utterance_count; i > 0u; i--)
-            if (voice->utterances[i - 1u].identity == identity)
-                return (int)i - 1;
+        const int position = position_of(voice, identity);
+        if (position >= 0)
+            return position;
         if (labial_voice_is_over(voice, identity))
-            return -1;
+            return LABIAL_VOICE_IS_OVER;
     }
-    if (voice->finished)
-        result = append_behind(voice, 0);
-    last = voice->utterances + voice->utterance_count - 1u;
-    if (result == LABIAL_OK && identity && last->identity)
+    if (voice->finished || (identity && last->identity)) {
+        if (places == 0u)
+            return LABIAL_VOICE_HAS_NONE;
+        if (places > labial_voice_free(voice))
+            return LABIAL_ERROR_FULL;
         result = append_behind(voice, identity);
+    }
     if (result != LABIAL_OK)
         return result;
     last = voice->utterances + voice->utterance_count - 1u;
     if (identity)
         last->identity = identity;
     return (int)voice->utterance_count - 1;
+}
+
+/* The sound of an utterance that waited, or whose sound was not heard of yet, begins. */
+static void place_utterance(labial_voice_t *voice, unsigned position, int64_t origin)
+{
+    labial_voice_utterance_t *const utterance = voice->utterances + position;
+    utterance->origin = origin;
+    utterance->queued = 0;
+    end_before(voice, position, origin);
+    labial_voice_requeue(voice, position);
 }
 
 /* ---- Beginning and end ------------------------------------------------------------------------------------------- */
@@ -120,7 +150,7 @@ int labial_voice_init(labial_voice_t *voice, const labial_model_t *model, void *
     voice->workspace_size = workspace;
     voice->items = (labial_voice_place_t *)(void *)((char *)memory + workspace);
     voice->room = (uint32_t)(size < PLACES_MAX ? size : PLACES_MAX);
-    return append_utterance(voice, 0, 0, 0);
+    return append_utterance(voice, 0, 0, 1);
 }
 
 int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[LABIAL_ARPABET_PHONEMES])
@@ -152,11 +182,17 @@ int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds)
 int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance)
 {
     unsigned i;
-    int result = labial_voice_status(voice);
+    int position, result = labial_voice_status(voice);
     if (result != LABIAL_OK)
         return result;
     if (at != LABIAL_VOICE_BEHIND && at > LABIAL_VOICE_CLOCK)
         return LABIAL_ERROR_RANGE;
+    position = utterance ? position_of(voice, utterance) : -1;
+    if (position >= 0 && voice->utterances[position].queued) {
+        if (at != LABIAL_VOICE_BEHIND)
+            place_utterance(voice, (unsigned)position, (int64_t)at);
+        return LABIAL_OK;
+    }
     labial_voice_forget(voice, labial_voice_now(voice) - (int64_t)LABIAL_VOICE_HISTORY * 1000);
     if (at == LABIAL_VOICE_BEHIND)
         result = append_behind(voice, utterance);
@@ -197,17 +233,25 @@ int labial_voice_done(labial_voice_t *voice)
 {
     unsigned i;
     uint32_t places = 0;
-    int64_t end;
+    int64_t latest = 0;
     if (labial_voice_status(voice) != LABIAL_OK)
         return 0;
-    if (voice->cancelled)
-        return voice->step == voice->steps;
-    for (i = 0; i < voice->utterance_count; i++)
+    for (i = 0; i < voice->utterance_count; i++) {
+        const int64_t limit = voice->utterances[i].limit;
+        int64_t end;
+        if (voice->utterances[i].places == 0u)
+            continue;
+        end = labial_voice_end(voice, i);
         places += voice->utterances[i].places;
-    if (places == 0u || !voice->finished)
-        return voice->finished;
-    end = labial_voice_end(voice, voice->utterance_count - 1u) + LABIAL_VOICE_REST;
-    return (int64_t)voice->next * 1000 >= end * voice->model->frames_per_second;
+        if (end > limit)
+            end = limit;
+        if (end > latest)
+            latest = end;
+    }
+    if (places == 0u)
+        return (voice->finished || voice->cancelled) && voice->step == voice->steps;
+    latest += voice->offset + (int64_t)LABIAL_VOICE_REST;
+    return voice->finished && (int64_t)voice->next * 1000 >= latest * voice->model->frames_per_second;
 }
 
 labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice)

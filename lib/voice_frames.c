@@ -161,7 +161,7 @@ static void follow_changes(labial_voice_t *voice, int is_late)
     const int is_new = !voice->streaming;
     voice->changed = 0;
     labial_voice_forget(voice, (int64_t)second * 1000);
-    if (is_new && voice->begun && !labial_voice_plan_sounds(voice))
+    if (is_new && (voice->begun || voice->cancelled) && !labial_voice_plan_sounds(voice))
         return; /* the neutral face after a cancel */
     if (is_new || is_late || (voice->stale && !is_given(voice, (int64_t)second * 1000)))
         renew_stream(voice, second);

@@ -177,15 +177,10 @@ static void insert_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
 
 /* Adds a message to an utterance whose kind it is of, or becomes. */
 static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utterance,
-                       const labial_voice_message_t *message)
+                       const labial_voice_message_t *message, message_summary_t found)
 {
-    message_summary_t found = summarise(voice, message, 0);
     uint64_t base = 0;
     uint32_t from, to;
-    if (found.count == 0u && !message->key) {
-        voice->counts.skipped += message->count;
-        return LABIAL_OK;
-    }
     if (message->kind == utterance->kind) {
         if (message->times == LABIAL_VOICE_CHAINED)
             base = utterance->told;
@@ -234,7 +229,8 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
 
 int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *message)
 {
-    int result = labial_voice_status(voice), position;
+    message_summary_t found;
+    int result = labial_voice_status(voice), position = LABIAL_VOICE_IS_OVER;
     if (result == LABIAL_OK && (!message || (!message->items && message->count > 0u)))
         result = LABIAL_ERROR_NULL;
     if (result != LABIAL_OK)
@@ -244,21 +240,25 @@ int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *messa
     if (message->kind >= LABIAL_VOICE_WORDS && !voice->words)
         return LABIAL_ERROR_STATE;
     labial_voice_forget(voice, labial_voice_now(voice) - (int64_t)LABIAL_VOICE_HISTORY * 1000);
-    position = -1;
+    found = summarise(voice, message, 0);
     if (voice->cancelled)
         labial_voice_note_over(voice, message->utterance);
     else
-        position = labial_voice_utterance_of(voice, message->utterance);
+        position = labial_voice_utterance_of(voice, message->utterance, found.places);
     if (position == LABIAL_ERROR_FULL)
         return LABIAL_ERROR_FULL;
-    if (position < 0) {
+    if (position == LABIAL_VOICE_IS_OVER) {
         voice->counts.dropped++;
         return LABIAL_CANCELLED;
     }
-    if (message->kind > voice->utterances[position].kind)
+    if (position >= 0 && message->kind > voice->utterances[position].kind)
         return LABIAL_OK;
+    if (position < 0 || (found.count == 0u && !message->key)) {
+        voice->counts.skipped += message->count;
+        return LABIAL_OK;
+    }
     voice->changed = 1;
-    result = add_message(voice, voice->utterances + position, message);
+    result = add_message(voice, voice->utterances + position, message, found);
     if (result == LABIAL_OK)
         labial_voice_requeue(voice, (unsigned)position);
     return result;

@@ -55,8 +55,13 @@ static inline int64_t labial_voice_now(const labial_voice_t *voice)
 /* Moves the utterances that are queued behind one that was told more of. */
 void labial_voice_requeue(labial_voice_t *voice, unsigned position);
 
-/* The position of the utterance that a message of this identity belongs to, which may be a new one; or an error. */
-int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity);
+/* Of an utterance that a message belongs to: it is over; or there is none yet, and the message has nothing for it. */
+#define LABIAL_VOICE_IS_OVER (-1000)
+#define LABIAL_VOICE_HAS_NONE (-1001)
+
+/* The position of the utterance that a message of this identity belongs to, which may be a new one, where there are so
+ * many places for it; or one of these, or LABIAL_ERROR_FULL with nothing changed. */
+int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t places);
 
 /* ---- Items: a place is told by its index; those of an utterance lie one after the other -------------------------- */
 

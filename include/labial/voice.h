@@ -25,7 +25,7 @@
  *   of a text. Messages of an utterance that waits go to it, whatever came between. Messages of one that was cancelled
  *   or is over are dropped. An utterance without an identity takes that of the first message that has one.
  * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
- *   own sound is heard.
+ *   own sound is heard or labial_voice_begin() says when that is.
  * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
  *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
  *   kind (labial_voice_kind_t) count.
@@ -201,7 +201,7 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 /*
  * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
  * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
- * message. After a cancel, items count again from here on.
+ * message; that of an utterance that began by itself moves it to `at`. After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
@@ -277,7 +277,7 @@ struct labial_voice_utterance {
     uint32_t serial;     /* its number */
     uint8_t kind;        /* that counts */
     uint8_t tail;        /* places of the last item */
-    uint8_t queued;      /* it begins behind the one before it */
+    uint8_t queued;      /* it began by itself: behind the one before it */
     uint8_t joined;      /* its last message was */
 };
 

@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <setjmp.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <cmocka.h>
 
 #include "fixture.h"
@@ -55,7 +56,7 @@ static inline void suite_within(const char *expression, long long found, long lo
 }
 
 /* All tests of the suite, and behind them nothing. */
-static struct CMUnitTest suite[48];
+static struct CMUnitTest suite[64];
 static size_t suite_count;
 
 /* A test, or one after `setup`. Its `state` is cmocka's, which few need. */
@@ -70,6 +71,8 @@ static size_t suite_count;
     __attribute__((constructor)) static void enter_##name(void)                                                        \
     {                                                                                                                  \
         const struct CMUnitTest entered = cmocka_unit_test_setup(name, setup);                                         \
+        if (suite_count == sizeof suite / sizeof *suite)                                                               \
+            abort(); /* there is no room for so many tests */                                                          \
         suite[suite_count++] = entered;                                                                                \
     }                                                                                                                  \
     static void test_##name(void **state __attribute__((unused)))

@@ -538,7 +538,97 @@ TEST_AFTER(begin, an_utterance_ends_where_the_next_begins)
     assert_int_equal(voice.utterance_count, 2);
     assert_int_equal(labial_voice_begin(&voice, 100, 0), LABIAL_OK);
     tell_one("F", 0, 50);
-    assert_string_equal(known(), "0-300 M");
+    assert_string_equal(known(), "0-100 M, 100-150 F");
+    assert_int_equal(labial_voice_begin(&voice, 50, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 20, 0), LABIAL_OK); /* in its place */
+    assert_string_equal(known(), "0-20 M");
+}
+
+TEST_AFTER(begin, an_utterance_that_was_told_begins_with_its_sound)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 100);
+    message.utterance = name("c");
+    tell_one("F", 0, 100);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 200, name("a")), LABIAL_OK);
+    assert_string_equal(known(), "200-700 M, 700-800 S, 800-900 F");
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("b")), LABIAL_OK); /* as it is */
+    assert_int_equal(labial_voice_begin(&voice, 600, name("b")), LABIAL_OK);
+    assert_string_equal(known(), "200-600 M, 600-700 S, 800-900 F");
+    message.utterance = name("b");
+    tell_one("S", 100, 400);
+    assert_string_equal(known(), "200-600 M, 600-700 S, 700-1000 S, 1000-1100 F");
+    assert_int_equal(voice.utterance_count, 3);
+    play(1500);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    play(1600);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_int_equal(labial_voice_begin(&voice, 3000, name("b")), LABIAL_OK); /* once more, under the same name */
+    assert_int_equal(voice.utterance_count, 4);
+}
+
+TEST_AFTER(begin, what_waits_gives_way_to_what_begins)
+{
+    message.utterance = name("a");
+    tell_one("AA", 0, 3000);
+    message.utterance = name("b");
+    tell_one("IY", 0, 1000);
+    assert_int_equal(labial_voice_begin(&voice, 1000, name("c")), LABIAL_OK);
+    message.utterance = name("c");
+    tell_one("S", 0, 500);
+    message.utterance = name("a");
+    tell_one("AA", 3000, 4000);
+    assert_string_equal(known(), "0-1000 AA, 1000-1500 S");
+    assert_int_equal(labial_voice_begin(&voice, 1200, 0), LABIAL_OK); /* before what is known ends */
+    message.utterance = 0;
+    tell_one("M", 0, 100);
+    assert_string_equal(known(), "0-1000 AA, 1000-1200 S, 1200-1300 M");
+    assert_int_equal(labial_voice_begin(&voice, 1100, 0), LABIAL_OK);
+    tell_one("M", 0, 20);
+    assert_string_equal(known(), "0-1000 AA, 1000-1100 S, 1100-1120 M");
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    play(1580);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    play(1600);
+    assert_int_equal(labial_voice_done(&voice), 1);
+}
+
+TEST_AFTER(begin, an_offset_moves_the_ends_too)
+{
+    assert_int_equal(labial_voice_offset(&voice, 300), LABIAL_OK);
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 500, 0), LABIAL_OK);
+    tell_one("S", 0, 500);
+    assert_string_equal(known(), "300-800 M, 800-1300 S");
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    play(1700);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    play(1800);
+    assert_int_equal(labial_voice_done(&voice), 1);
+}
+
+TEST_AFTER(begin, what_is_refused_or_empty_changes_nothing)
+{
+    static char text[256];
+    memset(text, 'a', sizeof text);
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    message.utterance = name("b");
+    assert_int_equal(tell(), LABIAL_OK); /* a last message without items */
+    item("M", 100, 50);
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_int_equal(labial_voice_counts(&voice).skipped, 1);
+    message.kind = LABIAL_VOICE_WORDS;
+    for (unsigned i = 0; i < PLACES; i++)
+        item(text, 10 * (int64_t)i, 10 * (int64_t)i + 10);
+    assert_int_equal(tell(), LABIAL_ERROR_FULL);
+    assert_int_equal(voice.utterance_count, 1);
+    play(1000);
+    assert_int_equal(labial_voice_done(&voice), 1);
 }
 
 TEST_AFTER(begin, there_are_only_so_many_utterances)
@@ -943,6 +1033,27 @@ TEST_AFTER(begin_frames, a_cancel_eases_to_rest)
     want(1100);
     show_until(2400);
     assert_memory_equal(shown[70], wanted[70], 51 * sizeof *shown);
+}
+
+TEST_AFTER(begin_frames, an_end_right_after_a_cancel_waits_for_the_face)
+{
+    tell_sentence(0, SENTENCE);
+    show_until(900);
+    assert_int_equal(labial_voice_cancel(&voice, 200), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 1500, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    show_until(1100);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_memory_equal(shown[55], rest, sizeof rest);
+}
+
+TEST_AFTER(begin_frames, a_cancel_before_the_first_frame)
+{
+    assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
+    show_until(200);
+    assert_memory_equal(shown[0], rest, sizeof rest);
+    assert_memory_equal(shown[10], rest, sizeof rest);
 }
 
 TEST_AFTER(begin_frames, done)

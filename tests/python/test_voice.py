@@ -401,6 +401,20 @@ def test_contexts_queue_and_stale_ones_change_nothing() -> None:
     assert frames[0] == frames[1]
 
 
+def test_an_utterance_that_was_told_begins_with_its_sound() -> None:
+    """Words come before the sound, which begins later than the clock."""
+    with labial.Voice() as voice:
+        for name, text in (("a", "Maybe"), ("b", "people")):
+            voice._tell("words", [(text, 0.0, 0.5)], utterance=name)
+        voice.begin(0.2, "a")
+        voice.begin(1.0, "b")
+        voice.finish()
+        shown = played(voice, 0, 2)
+        assert voice.done
+    silence = ("SIL", 300)
+    assert shown == motion([("SIL", 200), *said([("Maybe", 0, 0.5)]), silence, *said([("people", 0, 0.5)])], 101)
+
+
 @pytest.mark.parametrize("start_digits", [3, 2])
 def test_rounding_shifts_nothing(start_digits: int) -> None:
     """Starts and durations that are rounded apart: a message that begins before the end of the last one goes on there.

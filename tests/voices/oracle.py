@@ -158,10 +158,12 @@ class Oracle:
         found: Plan = []
         moment = start
         origins = [one["origin"] for one in self.utterances]
-        for one, limit in zip(self.utterances, [*origins[1:], math.inf]):
-            shift = one["origin"] + int(self.options.get("offset_ms", 0))
+        limits = [min(origins[k + 1 :], default=math.inf) for k in range(len(origins))]
+        for one, limit in zip(self.utterances, limits):
+            offset = int(self.options.get("offset_ms", 0))
+            shift = one["origin"] + offset
             for begin, end, label in self.spoken(one):
-                begin, end = max(begin + shift, moment), min(end + shift, limit)
+                begin, end = max(begin + shift, moment), min(end + shift, limit + offset)
                 if begin < end:
                     found += [(moment, begin, "SIL")] if begin > moment else []
                     found.append((begin, end, label))
@@ -197,7 +199,7 @@ class Oracle:
         self.changed = False
         start = max(0, self.next * 20 // 1000 - 2) * 1000
         plan = self.from_time(start)
-        if self.neutral and not any(map(self.spoken, self.utterances)) and self.shown is not None:
+        if self.neutral and not any(map(self.spoken, self.utterances)) and (self.shown is not None or self.cancelled):
             return
         if not self.neutral and not late and self.epoch >= 0:
             fed = self.plan[: needed(self.plan, self.next - self.epoch // 20)]
