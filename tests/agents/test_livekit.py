@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
+import time
 from pathlib import Path
 from typing import List, Tuple
 
@@ -14,6 +15,9 @@ import labial
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "voices"
 sys.path.insert(0, str(EXAMPLES))
 pytest.importorskip("livekit.agents")
+
+from livekit import rtc  # noqa: E402
+from livekit.agents.types import USERDATA_TIMED_TRANSCRIPT, TimedString  # noqa: E402
 
 import livekit_agent  # noqa: E402
 import stand_in  # noqa: E402
@@ -72,3 +76,26 @@ def test_an_interruption_closes_the_mouth() -> None:
     frames = [frame.faps for frame in asyncio.run(livekit_agent.main(TEXT, interrupt_after=0.7))]
     neutral = [number for number, faps in enumerate(frames) if not any(faps)]
     assert neutral and 25 < neutral[0] < 50
+
+
+def test_a_clock_that_does_not_pause_goes_on() -> None:
+    """Agents resume their output before each answer; a clock that went back would show nothing until it caught up."""
+    async def clock() -> float:
+        lips = livekit_agent.LipsOutput(livekit_agent.StandInOutput())
+        lips.on_playback_started(created_at=time.time() - 2)
+        lips.resume()
+        return lips.clock()
+
+    assert 2 <= asyncio.run(clock()) < 3
+
+
+def test_sentences_of_one_word_are_heard() -> None:
+    """A service without times is told in sentences, where each begins; as a word it would silence the sound's lips."""
+    async def told() -> int:
+        lips = livekit_agent.LipsOutput(livekit_agent.StandInOutput())
+        frame = rtc.AudioFrame(bytes(4800), 24000, 1, 2400)
+        frame.userdata[USERDATA_TIMED_TRANSCRIPT] = [TimedString("Thanks!", start_time=0.0)]
+        await lips.capture_frame(frame)
+        return lips.voice.stats.told
+
+    assert asyncio.run(told()) == 0

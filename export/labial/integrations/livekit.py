@@ -54,8 +54,9 @@ class LipsOutput(AudioOutput):
             self._origin = self._queued = max(self._queued, self.clock() or 0.0)
             self.voice.begin_sound(self._origin)
         for text in frame.userdata.get(USERDATA_TIMED_TRANSCRIPT, []):
-            if is_given(text.start_time) and len(text.split()) == 1:  # of a sentence the sound says more
-                self.voice.say(text, text.start_time, text.end_time if is_given(text.end_time) else None)
+            # Of a sentence, whose end is not given, the sound says more.
+            if is_given(text.start_time) and is_given(text.end_time) and len(text.split()) == 1:
+                self.voice.say(text, text.start_time, text.end_time)
         self.voice.sound(bytes(frame.data), frame.sample_rate, frame.num_channels)
         self._queued += frame.duration
         for piece in self._resampled(frame):
@@ -82,8 +83,9 @@ class LipsOutput(AudioOutput):
         super().pause()
 
     def resume(self) -> None:
-        """Lets it run again."""
-        self._moment, self._paused = time.time(), False
+        """Lets it run again. Agents also call it where there was no pause."""
+        self._hold()
+        self._paused = False
         super().resume()
 
     # ---- The clock
