@@ -58,6 +58,7 @@ export function documentsOf(source, odd = null, most = Infinity) {
         if (!(error instanceof SyntaxError)) throw error;
     }
     const lines = linesOf(text).map((line, i) => [contentOf(line), i + 1]).filter(([line]) => !/^[ \t\r]*$/.test(line));
+    if (odd && !lines.length) return []; // an event without a document
     const isEvent = lines.length === 1 && lines[0][0] !== text.trim();
     if (lines.length < 2 && !isEvent) throw new LabialError("not JSON");
     if (lines.length > most) throw new LabialError(`${lines.length} lines, more than the ${most} that are read`);

@@ -252,10 +252,10 @@ class Tell {
             if (!this.only.every(([field, text]) => says(field) === text)) continue;
             if (this.without.some(([field, text]) => says(field).includes(text))) continue;
             const text = this.#text(this.text.found(one)[0], one, odd);
-            const start = this.start ? this.#time(this.start, one, root, odd) : moment;
+            const start = this.start ? this.#time(this.start, one, root, odd) ?? 0 : moment; // protobuf leaves zeros out
             const length = this.length && this.#time(this.length, one, root, odd);
             const told = this.end && this.#time(this.end, one, root, odd);
-            if (text === null || start === null || [start, length, told].some(Number.isNaN)) continue;
+            if (text === null || [start, length, told].some(Number.isNaN)) continue;
             const end = length === null ? told : start + length;
             if (!this.start && end !== null) moment = end;
             const [from, to] = this.pieces.map((field) => field.found(one)[0]);

@@ -252,6 +252,15 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     await assert.rejects((await Labial.load()).voice(), { message: /^words are not loaded/ });
 });
 
+test("an event may have no document, and a time of zero be left out", async () => {
+    const voice = await told({});
+    const before = voice.stats.told;
+    for (const message of ["", "\r\n", "data: [DONE]\n\n", ": keepalive\n\n", "event: x", "id: 5\n"]) voice.feed(message);
+    assert.equal(voice.stats.told, before);
+    voice.feed({ timepoints: [{ markName: "go" }, { markName: "on", timeSeconds: 0.5 }] });
+    assert.equal(voice.stats.told, before + 2);
+});
+
 test("numbers are written out by the caller, once each", async () => {
     const asked = [];
     const numbers = (digits) => (asked.push(digits), "people");

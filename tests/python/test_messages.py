@@ -15,7 +15,7 @@ from enum import Enum
 from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import Any, Callable, Dict, List, Tuple
+from typing import Any, Callable, Dict, List, Sequence, Tuple
 
 import pytest
 
@@ -72,19 +72,70 @@ class _Event:
         raise RuntimeError("no result")
 
 
+class _Repeated(Sequence[Any]):
+    """As protobuf's repeated fields are: neither a list nor a tuple."""
+
+    def __init__(self, *items: Any) -> None:
+        self._items = items
+
+    def __getitem__(self, index: Any) -> Any:
+        return self._items[index]
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+
+@dataclass
+class _Derived:
+    """As Kokoro's results are: what tells is a property, another has no value."""
+
+    item: Dict[str, Any]
+
+    @property
+    def word(self) -> str:
+        return self.item["word"]
+
+    @property
+    def start(self) -> float:
+        return self.item["start"]
+
+    @property
+    def end(self) -> float:
+        return self.item["end"]
+
+    @property
+    def none(self) -> str:
+        raise RuntimeError("no value")
+
+
 @pytest.mark.parametrize("message", [
-    GO, [GO], json.dumps(GO), json.dumps(GO).encode(), f"data: {json.dumps(GO)}\n\n",
+    GO, [GO], _Repeated(GO), _Repeated(_Word("go", 0.5, 0.75)), _Derived(GO),
+    json.dumps(GO), json.dumps(GO).encode(), f"data: {json.dumps(GO)}\n\n",
     b"data: " + json.dumps(GO).encode(),
     f"event: word\nid: 7\ndata: {json.dumps(GO)}\n\n: waits\ndata: [DONE]\n\n", f"{{}}\n{json.dumps(GO)}\n",
     _Word("go", 0.5, 0.75), [_Word("go", 0.5, 0.75)], namedtuple("Word", GO)(**GO), _Event(),
     *(_Dumps(name, GO) for name in ("model_dump", "to_dict", "dict")),
     {"text": "go", "audio_offset": 5_000_000, "duration": timedelta(milliseconds=250)},
     {"word_timestamps": _Dumps("model_dump", {"words": ["go"], "start": [0.5], "end": [0.75]})},
+    {"word_timestamps": {"words": _Repeated("go"), "start": _Repeated(0.5), "end": _Repeated(0.75)}},
     {"word": "go", "start": timedelta(seconds=0.5), "end": timedelta(seconds=0.75)},
 ])  # fmt: skip
 def test_what_users_hold(message: Any) -> None:
     """The same word from each; catches a timedelta that is divided by a unit, and events that are no documents."""
     assert told(message) == [("go", 0.5, 0.75)]
+
+
+def test_a_time_of_zero_may_be_missing() -> None:
+    """As in the JSON of protobuf, with which Google answers."""
+    found = told({"timepoints": [{"markName": "go"}, {"markName": "on", "timeSeconds": 0.5}]})
+    assert [(text, start) for text, start, _ in found] == [("go", 0.0), ("on", 0.5)]
+
+
+@pytest.mark.parametrize("message", ["", "\r\n", "data: [DONE]\n\n", ": keepalive\n\n", "event: x", "id: 5\n",
+                                     "event: done\ndata: [DONE]\n\n"])
+def test_an_event_may_have_no_document(message: str) -> None:
+    """Those that end a stream or keep it open come by themselves."""
+    assert not told(message) and not told(message.encode())
 
 
 @pytest.mark.parametrize("message", [7, None, {1}, 1.5, True, Messages, object()])

@@ -55,29 +55,41 @@ def plain_name(key: Any) -> str:
     return str(key).replace("_", "").lower()
 
 
+def is_list(value: Any) -> bool:
+    """Whether a value is a list, or a sequence of a client library."""
+    return isinstance(value, (list, tuple)) or (isinstance(value, Sequence) and not isinstance(value, _VALUES))
+
+
 def fields_of(value: Any) -> Optional[Mapping[Any, Any]]:
     """The fields of a dictionary or of an object of a client library: what it dumps, or its public attributes, of which
     at most `MESSAGE_FIELDS` are read. None for texts, numbers, lists and None."""
     if isinstance(value, Mapping):
         return value
-    if isinstance(value, type) or (isinstance(value, _VALUES) and not hasattr(value, "_asdict")):
+    if isinstance(value, type) or (isinstance(value, (*_VALUES, Sequence)) and not hasattr(value, "_asdict")):
         return None
     if is_dataclass(value):
-        return {field.name: getattr(value, field.name, None) for field in dataclass_fields(value)}
+        names = [field.name for field in dataclass_fields(value)]
+        names += [name for name, item in vars(type(value)).items() if isinstance(item, property) and name[0] != "_"]
+        return _attributes(value, names)
     for name in _DUMPS:
         dump = getattr(value, name, None)
         if callable(dump):
             found = dump()
             return found if isinstance(found, Mapping) else None
+    return _attributes(value, [name for name in dir(value) if not name.startswith("_")][:MESSAGE_FIELDS]) or None
+
+
+def _attributes(value: Any, names: Sequence[str]) -> Dict[str, Any]:
+    """Attributes of an object that have values and are no functions."""
     found = {}
-    for name in [name for name in dir(value) if not name.startswith("_")][:MESSAGE_FIELDS]:
+    for name in names:
         try:
             item = getattr(value, name)
         except Exception:  # noqa: BLE001 - a property of a library that has no value yet
             continue
         if not callable(item):
             found[name] = item
-    return found or None
+    return found
 
 
 class Parsed(os.PathLike[str]):
@@ -102,7 +114,7 @@ def documents(path: PathLike, text: str, most: Optional[int] = None,
               odd: Optional[Callable[[DataError], None]] = None) -> List[Tuple[Optional[int], int, Any]]:
     """The documents of a text, each with its line, if it has one of its own, and its number. Raises DataError where the
     text is neither JSON nor lines of JSON, and for more than `most` lines; `odd` is called for single lines that are no
-    JSON, if it is given."""
+    JSON, if it is given, and a text may then have no documents, as that of an event that only ends a stream."""
     try:
         document = loads(path, None, text)
         items = document if isinstance(document, list) else [document]
@@ -110,6 +122,8 @@ def documents(path: PathLike, text: str, most: Optional[int] = None,
     except json.JSONDecodeError as error:
         lines = [(number, _content(line)) for number, line in enumerate(lines_of(text), 1)]
         lines = [(number, line) for number, line in lines if not is_blank(line)]
+        if odd is not None and not lines:
+            return []  # an event without a document
         # Two lines at least, or one of an event; the first shows whether lines are documents.
         is_event = len(lines) == 1 and lines[0][1] != text.strip()
         if not (len(lines) > 1 or is_event) or not _is_document(lines[0][1]):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
-from labial.corpus.entries import Entry, documents, fields_of, shown
+from labial.corpus.entries import Entry, documents, fields_of, is_list, shown
 from labial.corpus.phonesets import AUTO, SPEECH
 from labial.corpus.service_files import LONGEST_GAP, phoneme_segments_of
 from labial.corpus.services import SERVICES, Odd, Timed, Told, service_of
@@ -97,7 +97,7 @@ class Messages:
                 raise DataError(name, None, "not UTF-8") from None
         if isinstance(message, str):
             lines = documents(name, message, MESSAGE_DOCUMENTS, odd.count_of)
-        elif isinstance(message, (list, tuple)) and fields_of(message) is None:
+        elif is_list(message) and fields_of(message) is None:
             lines = [(None, number, item) for number, item in enumerate(message, 1)]
         else:
             lines = [(None, 1, message)]
@@ -108,7 +108,7 @@ class Messages:
             fields = fields_of(item)
             if fields is not None:
                 found.append(Entry(name, line, number, fields))
-            elif isinstance(message, (str, list, tuple)):
+            elif isinstance(message, str) or is_list(message):
                 raise Entry(name, line, number, {}).error(f"{shown(item)} is not an object")
             else:
                 raise TypeError(f"a message is a dict, an object, a list, text or bytes, not {type(message).__name__}")

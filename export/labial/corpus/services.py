@@ -15,7 +15,7 @@ from numbers import Real
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.corpus.entries import Entry, plain_name, shown
+from labial.corpus.entries import Entry, is_list, plain_name, shown
 from labial.corpus.timings import LONGEST
 from labial.errors import DataError
 
@@ -129,7 +129,7 @@ def _descended(entry: Entry, steps: Sequence[Tuple[str, int, bool]]) -> Any:
             return _MISSING
         value = inner.fields.get(name, _MISSING) if exact else inner.plain.get(name, _MISSING)
         for _ in range(depth):
-            value = value[0] if isinstance(value, (list, tuple)) and value else _MISSING
+            value = value[0] if is_list(value) and value else _MISSING
         inner = None if value is _MISSING else entry.inner(value)
     return value
 
@@ -152,7 +152,7 @@ def _listed(value: Any) -> Optional[List[Any]]:
     """A list, or an array or tensor as one; None for anything else."""
     if hasattr(value, "tolist"):
         value = value.tolist()
-    return list(value) if isinstance(value, (list, tuple)) else None
+    return list(value) if is_list(value) else None
 
 
 class _Tell:
@@ -199,7 +199,7 @@ class _Tell:
     def listed(self, item: Entry) -> bool:
         """Whether there is a list of items, which may be empty."""
         steps = [(name, 0, exact) for name, _, exact in self.places[0]]
-        return isinstance(_descended(item, steps), (list, tuple))
+        return is_list(_descended(item, steps))
 
     def _within(self, item: Entry, path: Sequence[Tuple[str, int, bool]], odd: Odd) -> List[Entry]:
         """The objects at the end of a path."""
@@ -227,8 +227,9 @@ class _Tell:
             start = moment if self.start is None else self._time(self.start, one, root, odd)
             span = None if self.length is None else self._time(self.length, one, root, odd)
             end = None if self.end is None else self._time(self.end, one, root, odd)
-            if text is None or math.nan in (start, span, end) or start is None:
+            if text is None or math.nan in (start, span, end):
                 continue
+            start = start or 0.0  # protobuf's JSON leaves zeros out
             end = end if span is None else start + span
             if self.start is None and end is not None:
                 moment = end
@@ -339,7 +340,7 @@ def _flat(value: Any, depth: int) -> List[Any]:
     """The items of lists in lists; what is no list is one item."""
     found = [value]
     for _ in range(depth):
-        found = [item for one in found for item in (one if isinstance(one, (list, tuple)) else [one])]
+        found = [item for one in found for item in (one if is_list(one) else [one])]
     return found
 
 
