@@ -31,7 +31,8 @@ def add_talker_variance(command: argparse.ArgumentParser) -> None:
     """``--talker-variance``; see :mod:`labial.train.talkers`."""
     command.add_argument("--talker-variance", type=number, metavar="V", help="--method labial: learn what talkers "
                          "share and let each stray from it, by this variance relative to that of what is shared (1 "
-                         "is what was chosen on talkers left out); weights of corpora then do not count")
+                         "is what was chosen on talkers left out); a corpus's weight then counts for each of its "
+                         "talkers")
 
 
 def add_engine(command: argparse.ArgumentParser) -> None:
@@ -49,7 +50,7 @@ def add_source(command: argparse.ArgumentParser) -> None:
     except LabialError:  # without the library, which whoever reads timings is told of
         known = None
     command.add_argument("--from", dest="source", choices=known, metavar="FORMAT",
-                         help=f"format of the timings: {', '.join(known or ())} (told by the file)")
+                         help=f"format of the timings: {', '.join(known or ())} (default: told by the file's contents)")
 
 
 def add_format(command: argparse.ArgumentParser) -> None:
@@ -60,8 +61,8 @@ def add_format(command: argparse.ArgumentParser) -> None:
     for name, item in FORMATS.items():
         names.setdefault(item.about, []).append(name)
     about = "; ".join(f"{', '.join(same)}: {text}" for text, same in names.items())
-    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", help=f"{about} (told by the "
-                         "output's name; csv)")
+    command.add_argument("--to", choices=tuple(FORMATS), metavar="FORMAT", help=f"{about} (default: that of "
+                         "the output's extension, else csv)")
     command.add_argument("--rig", metavar="FACE.toml", help="with --to jsonl: a face of your own in place of ARKit's, "
                          "as labial rig reads it")
 

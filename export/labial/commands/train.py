@@ -44,7 +44,8 @@ def add_train(command: argparse.ArgumentParser) -> None:
     command.add_argument("--asymmetric", action="store_true", help="--method labial: learn each side of the mouth by "
                          "itself, as --method paper always does, instead of the mean of both")
     command.add_argument("--normalise", action="store_true", help="--method paper: divide features by their standard "
-                         "deviations before they are clustered, as --method labial always does; the text does not")
+                         "deviations before they are clustered, as --method labial always does; the paper does "
+                         "not")
     command.add_argument("--seed", type=seed, default=0)
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1,
                          help="processes; the result is the same")
