@@ -215,8 +215,8 @@ void labial_voice_plan_next(labial_voice_t *voice, labial_voice_segment_t *segme
         const labial_voice_utterance_t *const utterance = voice->utterances + plan->utterance;
         const int64_t shift = utterance->origin + voice->offset;
         const int64_t start = plan->start + shift > silent ? plan->start + shift : silent;
-        const int64_t limit = utterance->limit == INT64_MAX ? INT64_MAX : utterance->limit + voice->offset;
-        const int64_t end = plan->end + shift < limit ? plan->end + shift : limit;
+        const int64_t told = plan->end + utterance->origin;
+        const int64_t end = (told < utterance->limit ? told : utterance->limit) + voice->offset;
         if (end > start && plan->phoneme != voice->model->silence) {
             if (start == plan->moment) {
                 segment->phoneme = plan->phoneme;

@@ -613,7 +613,7 @@ TEST_AFTER(begin, an_offset_moves_the_ends_too)
 TEST_AFTER(begin, what_is_refused_or_empty_changes_nothing)
 {
     static char text[256];
-    memset(text, 'a', sizeof text);
+    memset(text, 'a', sizeof text - 1);
     tell_one("M", 0, 500);
     assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
     assert_int_equal(labial_voice_done(&voice), 0);
