@@ -18,6 +18,7 @@ soundfile = pytest.importorskip("soundfile")
 
 from labial.__main__ import main  # noqa: E402
 from labial.corpus.episode import Segment  # noqa: E402
+from labial.corpus.languages import speakable  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
 from labial.hearing import targets  # noqa: E402
 from labial.hearing.espeak import closure, phonemes  # noqa: E402
@@ -72,6 +73,17 @@ def test_times_are_those_of_the_programs(program: str, voice: str, tmp_path: Pat
     true = true[:-REST]
     found = targets.opening(targets.frames(targets.durations(spoken.segments), len(true)))
     assert np.abs(found - true)[:-12].max() <= 30 and np.corrcoef(found, true)[0, 1] > 0.995
+
+
+@needs_espeak
+def test_chinese_and_japanese_are_said() -> None:
+    """Would catch Chinese characters that espeak-ng spells as English, and kanji that it leaves out."""
+    text = "\u4f60\u597d"  # ni hao
+    for voice in ("espeak:cmn", "espeak:cmn+f3", "espeak:zh"):
+        assert [item.label for item in one(voice, text).segments if item.label != "SIL"] == "N IY HH AW".split()
+    assert speakable("ni3 hao3", "cmn") == ("ni3 hao3", "cmn")
+    assert speakable("\u306f\u306f", "ja+f2") == ("\u306f\u306f", "ja+f2")
+    assert speakable("Hello", "en-us") == ("Hello", "en-us")
 
 
 @needs_espeak

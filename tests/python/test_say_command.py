@@ -89,6 +89,7 @@ def test_a_recording_is_heard(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 @pytest.mark.parametrize("arguments, problem", [
     (["say", " \n"], "there is nothing to say: the text is empty"),
     (["say", "...", "--voice", "none"], "'...' has no word that can be said"),
+    (["say", "Привет", "--voice", "none"], "has no word that can be said; for a text that is not English, name its"),
     (["say", "a", "-o", "a.txt"], "a.txt: the name of the output ends in .html or .lab or .csv"),
     (["say", "a", "--voice", "siri"], "'siri' is not a voice"),
     (["say", "a", "--audio", "a.wav"], "labial align finds the phonemes"),

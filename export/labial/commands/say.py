@@ -54,11 +54,18 @@ def run_say(options: argparse.Namespace) -> int:
     if options.audio is None and len(options.text) > MESSAGE_TEXT:
         raise LabialError(f"the text has {len(options.text):,} characters, more than the {MESSAGE_TEXT:,} that are "
                           "said at once; say it in parts, or give a recording of it with --audio")
+    is_english = options.language == "en" and not (options.voice or "").startswith("espeak:")  # that says its own
+    if options.audio is None and is_english and not re.search("[A-Za-z0-9]", options.text):
+        is_foreign = any(character.isalpha() for character in options.text)
+        hint = "; for a text that is not English, name its --language" if is_foreign else ""
+        raise LabialError(f"{options.text!r:.60} has no word that can be said{hint}")
     with ExitStack() as stack:
         audio, timings = options.audio, None
         if audio is None:
             spoken = _spoken(options, form)
             timings = _timed(options.text, options.language) if spoken is None else _of_segments(spoken)
+            if all(label == "SIL" for label, _ in timings):
+                raise LabialError(f"{options.text!r:.60} has no word that can be said")
             if spoken is not None and form == ".html":
                 audio = str(Path(stack.enter_context(tempfile.TemporaryDirectory())) / "said.wav")
                 _write_sound(spoken, audio)
@@ -103,7 +110,8 @@ def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
 
 def _of_segments(spoken: Spoken) -> Timings:
     ends = [round(1000 * segment.end) for segment in spoken.segments]
-    return [(segment.label, end - begin) for segment, begin, end in zip(spoken.segments, [0, *ends], ends)]
+    return [(segment.label, end - begin) for segment, begin, end in zip(spoken.segments, [0, *ends], ends)
+            if end > begin]
 
 
 def _timed(text: str, language: str) -> Timings:
@@ -118,8 +126,6 @@ def _timed(text: str, language: str) -> Timings:
         sign = re.search(r"[,;:.!?](?=\W*$)", word)
         if sign and said:
             found.append(("SIL", _PAUSES[sign[0]]))
-    if len(found) == 1:
-        raise LabialError(f"{text!r:.60} has no word that can be said")
     return found
 
 

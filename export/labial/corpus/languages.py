@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import unicodedata
 from functools import cache
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from labial.core import espeak
 from labial.core.words import read
@@ -33,6 +33,8 @@ _ALIKE = 0.5
 
 _VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
 _CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
+#: espeak-ng's voice that reads pinyin as such; "cmn" reads it as English.
+_PINYIN_VOICE = "cmn-latn-pinyin"
 _HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
 #: Marks of espeak-ng's: where words of another language begin, tones, and retroflex consonants.
 _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
@@ -76,6 +78,20 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
         if phonemes is None:
             _say_unspeakable(word, language)
     return found
+
+
+def speakable(text: str, voice: str) -> Tuple[str, str]:
+    """A text as espeak-ng can say it aloud, and the voice that does: Chinese is written in pinyin, with tones, and
+    Japanese in kana. Every other text and voice stays as it is. `voice` may have a variant ("cmn+f3")."""
+    language, plus, variant = voice.partition("+")
+    if _CHINESE.fullmatch(language):
+        return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if _HAN.search(text) else (text, voice)
+    if language.split("-")[0] == "ja":
+        kana = _kana(text)
+        if not kana.strip() and text.strip():
+            _say_unspeakable(text, language)
+        return kana, voice
+    return text, voice
 
 
 _unspeakable: Dict[str, None] = {}
@@ -211,11 +227,11 @@ def _by_pinyin(word: str) -> Optional[List[str]]:
 def _pinyin(word: str) -> str:
     """A word whose Chinese characters are written in pinyin."""
     try:
-        from pypinyin import lazy_pinyin
+        from pypinyin import Style, lazy_pinyin
     except ImportError:
         return "".join(part if not _HAN.match(part) else f" {_dictionary(part)} "
                        for part in re.findall(f"(?:{_HAN.pattern})+|[^{_HAN.pattern[1:]}+", word))
-    return " ".join(lazy_pinyin(word, v_to_u=True))
+    return " ".join(lazy_pinyin(word, style=Style.TONE3, v_to_u=True))
 
 
 def _dictionary(characters: str) -> str:

@@ -18,6 +18,7 @@ from typing import Callable, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from labial.corpus.episode import Segment
+from labial.corpus.languages import speakable
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, apt, missing
 from labial.files import wav
@@ -94,9 +95,13 @@ def _festival(name: str, texts: Sequence[str], pace: float, pitch: float) -> Ite
 
 
 def _espeak(name: str, texts: Sequence[str], pace: float, pitch: float) -> Iterator[Spoken]:
-    speaker = Speaker(name, pace, pitch)
-    for text in texts:
-        samples, rate, rows = speaker.say(text)
+    speaker, speaks = None, ""
+    for text, (written, voice) in zip(texts, [speakable(text, name) for text in texts]):
+        if not written.strip():
+            raise LabialError(f"espeak:{name} cannot say {text[:40]!r}")
+        if speaker is None or voice != speaks:
+            speaker, speaks = Speaker(voice, pace, pitch), voice
+        samples, rate, rows = speaker.say(written)
         yield Spoken(samples, rate, tuple(_segments(rows, len(samples) / rate, "ipa")))
 
 
