@@ -312,6 +312,8 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
+    if (!LABIAL_PAPER) /* labial_visemes() goes on from the frame that was delivered */
+        labial_units_go_back(&stream->units, stream->pending - stream->units.frames);
     reset_input(stream);
     stream->ended = stream->resting = 1;
     labial_fade_begin(&stream->fade, labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second),

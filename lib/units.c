@@ -28,6 +28,12 @@ void labial_units_reset(labial_units_t *units)
     units->begins = 1;
 }
 
+void labial_units_go_back(labial_units_t *units, uint32_t frames)
+{
+    if (frames <= LABIAL_REACH)
+        memmove(units->labels + frames, units->labels, sizeof units->labels - frames);
+}
+
 uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slot, uint32_t milliseconds,
                            uint32_t frames_per_second)
 {

@@ -48,6 +48,9 @@ enum {
 /* Empties the queue. */
 void labial_units_reset(labial_units_t *units);
 
+/* Makes the labels those around the frame that was accepted so many frames before the last one, within their reach. */
+void labial_units_go_back(labial_units_t *units, uint32_t frames);
+
 /* Appends a phoneme; the queue must have room. Returns its frames, which may be none. */
 uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slot, uint32_t milliseconds,
                            uint32_t frames_per_second);

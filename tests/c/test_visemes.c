@@ -164,6 +164,26 @@ TEST_AFTER(begin, a_face_at_rest_shows_silence)
     assert_true(found[frames - 4u][LABIAL_VISEME_AA] > 30);
 }
 
+/* A cancel shows nothing of the sounds that were about to come: its fade begins where the face is. */
+TEST_AFTER(begin, a_cancel_goes_on_from_what_was_shown)
+{
+    uint8_t shares[LABIAL_VISEMES];
+    for (unsigned silent = 0; silent < 12; silent++) {
+        for (unsigned i = 0; i < 10; i++)
+            say(i % 2u ? FIXTURE_P : FIXTURE_A, 5, 1);
+        say(FIXTURE_SIL, 1u + silent, 1);
+        say(FIXTURE_O, 20, 1);
+        memcpy(shares, found[frames - 1u], sizeof shares);
+        assert_int_equal(labial_cancel(&stream, 200), LABIAL_OK);
+        on_frame(NULL, frames, NULL);
+        for (unsigned i = LABIAL_VISEME_SIL + 1u; i < LABIAL_VISEMES; i++)
+            assert_in_range(found[frames - 1u][i], shares[i] * 3u / 4u, shares[i]);
+        run();
+        assert_int_equal(found[frames - 1u][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+        assert_int_equal(labial_restart(&stream), LABIAL_OK);
+    }
+}
+
 /* Before the first frame, and in the frames of another model, all is silence. */
 TEST_AFTER(begin, another_model_is_silence)
 {
