@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from labial.errors import ModelError
-from labial.evaluate.check import device_frames
+from labial.evaluate.check import FRAMES, Comparison, device_frames
 from labial.evaluate.loss import workspace_bytes
 from labial.files.faps import CHANNELS
 from labial.tables import emit
@@ -278,3 +278,14 @@ def test_a_model_of_format_3_is_read(tmp_path: Path) -> None:
         **{f"{names.get(name, name)}.npy": content for name, content in members.items()}}))
     save(load(former), former)
     assert former.read_bytes() == path.read_bytes()
+
+
+def test_the_distance_from_the_float_model_is_judged_in_enough_frames() -> None:
+    """Would catch a check that fails on one short sentence, or passes a model whose rounding moves the lips."""
+    parts = np.zeros((2, CHANNELS))
+    for frames, share, problems in ((FRAMES - 1, 1.7, 0), (FRAMES, 1.7, CHANNELS), (FRAMES, 0.9, 0)):
+        found = Comparison(frames, *parts, np.full(CHANNELS, share), np.full(CHANNELS, 100.0))
+        assert len(found.failures()) == problems
+        assert ("too few to judge" in found.table()) == (frames < FRAMES)
+    wrong = Comparison(1, parts[0] + 2, *parts, np.full(CHANNELS, 100.0))
+    assert len(wrong.failures()) == CHANNELS  # the library must equal its reference in every frame
