@@ -63,7 +63,9 @@ def _ending() -> Iterator[None]:
 def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command and returns its exit status: 0; 1 when an input cannot be used; 3 for an internal error; 128
     plus the signal's number when a signal ended it."""
-    given = sys.argv[1:] if arguments is None else arguments
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if given[:1] == ["help"]:
+        given = [*given[1:2], "--help"]
     top = parser(given)
     if not given:
         top.print_help()

@@ -45,7 +45,9 @@ def expect(condition: bool, message: str) -> None:
 def did_you_mean(name: object, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the known one that looks most like it, or all of them."""
     names = list(known)
-    near = get_close_matches(str(name).lower(), names, 1, 0.7) if len(str(name)) <= 100 else []
+    given = str(name).lower()
+    near = get_close_matches(given, names, 1, 0.7) if len(given) <= 100 else []
+    near = near or [item for item in names if sorted(item) == sorted(given)]  # short ones with letters exchanged
     return f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
 
 

@@ -34,6 +34,8 @@ def test_a_text_is_said_at_once(capsys: pytest.CaptureFixture[str]) -> None:
     found = timings("Hello there, how are you?", "--voice", "none", capsys=capsys)
     assert [label for _, _, label in found] == "SIL HH EH L OW DH EH R SIL HH AW AA R Y UW SIL".split()
     assert all(one[1] == other[0] for one, other in zip(found, found[1:])) and 1.0 < found[-1][1] < 3.0
+    assert main(["say", "Hello", "there,", "how are", "you?", "--voice", "none"]) == 0  # without quotes
+    assert [line.split()[2] for line in capsys.readouterr().out.splitlines()] == [label for _, _, label in found]
 
 
 @pytest.mark.parametrize("suffix", ["html", "csv", "fap", "jsonl", "lab"])
@@ -107,7 +109,7 @@ def test_errors_say_what_to_do(arguments: List[str], problem: str, tmp_path: Pat
 
 
 def test_names_that_are_nearly_right(capsys: pytest.CaptureFixture[str]) -> None:
-    for given, meant in (("trian", "train"), ("hera", "hear"), ("Page", "page")):
+    for given, meant in (("trian", "train"), ("hera", "hear"), ("Page", "page"), ("sya", "say")):
         with pytest.raises(SystemExit):
             main([given])
         assert f"{given!r} is no command: did you mean {meant}?" in capsys.readouterr().err
@@ -121,6 +123,10 @@ def test_alone_it_prints_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
     said = capsys.readouterr().out
     assert all(re.search(rf"^    {name}\b", said, re.MULTILINE) for name in COMMANDS)
+    for arguments, usage in ((["help"], "usage: labial [-h]"), (["help", "say"], "usage: labial say")):
+        with pytest.raises(SystemExit, match="0"):
+            main(arguments)
+        assert capsys.readouterr().out.startswith(usage)
 
 
 def test_a_notebook_shows_motion() -> None:

@@ -31,7 +31,7 @@ Timings = List[Tuple[str, int]]
 
 def add_say(command: argparse.ArgumentParser) -> None:
     """A text, its voice and the output."""
-    command.add_argument("text", metavar="TEXT", help="what is said")
+    command.add_argument("text", metavar="TEXT", nargs="+", help="what is said; several are joined by blanks")
     command.add_argument("-o", "--output", metavar="OUT", help="a page (.html), frames (.csv, .fap, .jsonl) or timings "
                          "(.lab); timings on standard output without it")
     group = command.add_mutually_exclusive_group()
@@ -47,6 +47,7 @@ def run_say(options: argparse.Namespace) -> int:
     from labial.files.limits import MESSAGE_TEXT
     from labial.files.outputs import check, check_suffix
 
+    options.text = " ".join(options.text)
     check(options.output)
     form = check_suffix(options.output, *_SUFFIXES) if options.output else ".lab"
     if not options.text.strip():
