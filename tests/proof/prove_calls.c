@@ -155,6 +155,7 @@ int prove_units(void)
     model.kernel_taps = (uint8_t)Frama_C_interval(0, LABIAL_REACH + 1);
     for (i = 0; i < LABIAL_MODELS; i++)
         models[i] = &model;
+    labial_units_go_back(&units, any_unsigned); /* moves labels, whatever they are, and makes none */
     labial_units_reset(&units);
     while (any_int) {
         if (any_int && units.count < LABIAL_QUEUE)
