@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import Iterable, Iterator, Optional, Union
+from typing import Iterable, Iterator, List, Optional, Union
 
 
 class LabialError(Exception):
@@ -46,8 +46,9 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
     """The end of a message about an unknown name: the known one that looks most like it, or all of them."""
     names = list(known)
     given = str(name).lower()
-    near = get_close_matches(given, names, 1, 0.7) if len(given) <= 100 else []
-    near = near or [item for item in names if sorted(item) == sorted(given)]  # short ones with letters exchanged
+    near: List[str] = []
+    if len(given) <= 100:
+        near = get_close_matches(given, names, 1, 0.7) or [item for item in names if sorted(item) == sorted(given)]
     return f"did you mean {near[0]}?" if near else f"there are {', '.join(names)}"
 
 

@@ -25,8 +25,8 @@
  *   4. When no frame comes any more, every output is at rest, exactly, at most
  *      ahead + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(range, slew, acceleration) ticks later, and
  *      labial_face_tick() returns LABIAL_DONE; after a cancel, its own time stands for hold and ease. Ticks that only
- *      catch up (labial_face_due()) do not count. It takes up to `ahead` ticks more where the last frames came several
- *      in one tick.
+ *      catch up (labial_face_due()) do not count. Where several of the last frames came between two ticks, it takes up
+ *      to `ahead` ticks more.
  *   5. Where one frame comes before each tick, none is lost: frame k is what the outputs are on the way to `ahead` ticks
  *      after it came.
  *

@@ -55,18 +55,12 @@ def run_say(options: argparse.Namespace) -> int:
     if options.audio is None and len(options.text) > MESSAGE_TEXT:
         raise LabialError(f"the text has {len(options.text):,} characters, more than the {MESSAGE_TEXT:,} that are "
                           "said at once; say it in parts, or give a recording of it with --audio")
-    is_english = options.language == "en" and not (options.voice or "").startswith("espeak:")  # that says its own
-    if options.audio is None and is_english and not re.search("[A-Za-z0-9]", options.text):
-        is_foreign = any(character.isalpha() for character in options.text)
-        hint = "; for a text that is not English, name its --language" if is_foreign else ""
-        raise LabialError(f"{options.text!r:.60} has no word that can be said{hint}")
     with ExitStack() as stack:
         audio, timings = options.audio, None
         if audio is None:
             spoken = _spoken(options, form)
             timings = _timed(options.text, options.language) if spoken is None else _of_segments(spoken)
-            if all(label == "SIL" for label, _ in timings):
-                raise LabialError(f"{options.text!r:.60} has no word that can be said")
+            _expect_words(options, timings)
             if spoken is not None and form == ".html":
                 audio = str(Path(stack.enter_context(tempfile.TemporaryDirectory())) / "said.wav")
                 _write_sound(spoken, audio)
@@ -107,6 +101,18 @@ def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
         if options.voice is not None:
             raise
         return None  # a synthesiser that nobody asked for
+
+
+def _expect_words(options: argparse.Namespace, timings: Timings) -> None:
+    """Raises LabialError where nothing is said: the text has no letters, or none that English has, for which the
+    library's tables move the lips a little all the same."""
+    is_english = options.language == "en" and not (options.voice or "").startswith("espeak:")
+    is_read = not is_english or re.search("[A-Za-z0-9]", options.text) is not None
+    if is_read and any(label != "SIL" for label, _ in timings):
+        return
+    is_foreign = not is_read and any(character.isalpha() for character in options.text)
+    hint = "; for a text that is not English, name its --language" if is_foreign else ""
+    raise LabialError(f"{options.text!r:.60} has no word that can be said{hint}")
 
 
 def _of_segments(spoken: Spoken) -> Timings:

@@ -33,6 +33,7 @@ _ALIKE = 0.5
 
 _VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
 _CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
+_JAPANESE = re.compile(r"ja(?:-.*)?")
 #: espeak-ng's voice that reads pinyin as such; "cmn" reads it as English.
 _PINYIN_VOICE = "cmn-latn-pinyin"
 _HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
@@ -69,10 +70,10 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
     if _CHINESE.fullmatch(language):
         found = [_by_pinyin(word) for word in given]
     else:
-        if language.split("-")[0] == "ja":
+        if _JAPANESE.fullmatch(language):
             given = [_kana(word) for word in given]
         found = [phonemes or None for phonemes in _by_espeak(given, language)]
-        if language.split("-")[0] == "ja":
+        if _JAPANESE.fullmatch(language):
             found = [phonemes and _DEVOICED.sub("", " ".join(phonemes)).split() for phonemes in found]
     for word, phonemes in zip(words, found):
         if phonemes is None:
@@ -86,9 +87,9 @@ def speakable(text: str, voice: str) -> Tuple[str, str]:
     language, plus, variant = voice.partition("+")
     if _CHINESE.fullmatch(language):
         return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if _HAN.search(text) else (text, voice)
-    if language.split("-")[0] == "ja":
+    if _JAPANESE.fullmatch(language):
         kana = _kana(text)
-        if not kana.strip() and text.strip():
+        if not kana.strip():
             _say_unspeakable(text, language)
         return kana, voice
     return text, voice
@@ -103,7 +104,7 @@ def _say_unspeakable(word: str, language: str) -> None:
     if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
         return
     _unspeakable[key] = None
-    is_kanji = language.split("-")[0] == "ja" and _HAN.search(word)
+    is_kanji = _JAPANESE.fullmatch(language) and _HAN.search(word)
     hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
     _logger.warning("espeak-ng cannot speak %.40r in the language %r: the lips move for its time alone%s", word,
                     language, hint)

@@ -37,7 +37,8 @@ RMS = 0.25
 
 #: Against the float model: root mean square in percent of each channel's range.
 SHARE = 1.0
-#: In fewer frames, 20 s, one phoneme whose rounded tables search another way exceeds that share: it is not judged.
+#: With fewer frames (20 s) that share is not judged: one phoneme for which the rounded tables find another path exceeds
+#: it.
 FRAMES = 1000
 
 
@@ -86,7 +87,8 @@ class Comparison:
         if self.by_design:
             lines.append(str(self.by_design))
         elif self.frames < FRAMES:
-            lines.append(f"{self.frames} frames are too few to judge how far the float model is: it takes {FRAMES:,}")
+            lines.append(f"{self.frames} frames are too few to judge the distance from the float model, which takes "
+                         f"{FRAMES:,}")
         return "\n".join(lines)
 
 
