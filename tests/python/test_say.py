@@ -179,6 +179,17 @@ def test_unknown_labels_are_named_once(text: str, line: int) -> None:
     assert done.stdout == say((text + text).replace("xyzzy", "k")).stdout
 
 
+@pytest.mark.parametrize(("text", "line", "seconds"), [
+    ("0 12 sil\n12 30 b\n30 50 aa\n", 2, 18), ("_ 90000\nb 10001\nb 10001\n", 2, 10),
+    ("pau:12.0 b:22.0\n", 0, 0),
+])  # fmt: skip
+def test_times_of_another_unit_are_asked_about(text: str, line: int, seconds: int) -> None:
+    """The first sound that is longer than speech has them is named; not a silence, nor one of just ten seconds."""
+    done = say(text)
+    assert done.returncode == 0 and done.stderr.decode() == (
+        f"labial-say: warning: line {line}: 'b' lasts {seconds} s: is the unit of time right?\n" if line else "")
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_damaged_files_are_motion_or_an_error(name: str) -> None:
     """Bytes that are no text, or hardly any, end in motion or an error with its line, not in a crash."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import re
+import warnings
 from pathlib import Path
 from typing import List, Sequence, Tuple
 
@@ -111,6 +112,19 @@ def test_unknown_labels_are_named_with_their_place(tmp_path: Path) -> None:
         segments = phoneme_segments(path, read_timings(path), SPEECH, strict=False)
     assert [s.label for s in segments] == ["HH", "HH", "HH"] and len(caught) == 1
     assert f"{path}:2: " in str(caught[0].message) and "'XX'" in str(caught[0].message)
+
+
+def test_times_of_another_unit_are_asked_about(tmp_path: Path) -> None:
+    """Milliseconds in the place of seconds; not a long silence, nor a phoneme that is held for ten seconds."""
+    path = put(tmp_path, "a.lab", "0 120 sil\n120 200 b\n200 350 aa\n")
+    with pytest.warns(UserWarning) as caught:
+        segments = phoneme_segments(path, read_timings(path), SPEECH)
+    assert [str(one.message) for one in caught] == [f"{path}:2: 'b' lasts 80 s: is the unit of time right?"]
+    assert segments[-1].end == 350
+    path.write_text("0 120 sil\n120 130 b\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(phoneme_segments(path, read_timings(path), SPEECH)) == 2
 
 
 PHRASE = [("SIL", 220), ("M", 70), ("AY", 150), ("B", 90), ("EY", 200), ("B", 80), ("IY", 90), ("SIL", 220)]

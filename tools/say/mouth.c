@@ -10,6 +10,8 @@
 
 /* Seconds of motion from which on a warning says why a program takes long. */
 #define LONG 3600u
+/* Milliseconds beyond which no sound of speech lasts: one that does was probably told in another unit. */
+#define LONG_SOUND 10000u
 
 const mouth_voice_t mouth_voices[] = { LABIAL_BUNDLED };
 static const mouth_voice_t laughter = { "laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names };
@@ -119,6 +121,11 @@ int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_label
             if (phoneme < 0)
                 return failed(mouth, where, labial_result_text(phoneme));
             warn(mouth, where, label, (unsigned)phoneme);
+        }
+        if (milliseconds > LONG_SOUND && phoneme != voice->model->silence && !mouth->long_named) {
+            mouth->long_named = 1;
+            fprintf(stderr, "%s: warning: %s'%s' lasts %lu s: is the unit of time right?\n", mouth->program, where,
+                    label, (unsigned long)(milliseconds / 1000u));
         }
     }
     if (use(mouth, where, voice) != 0 || push(mouth, where, (unsigned)phoneme, milliseconds) != 0)

@@ -2,7 +2,7 @@
  * mouth.h - phonemes by name in, written frames out: what labial-say and the programs with a speech synthesiser share.
  *
  * A label that the model does not know never stops the mouth: it moves as the nearest phoneme does, and each such label
- * is named once on standard error.
+ * is named once on standard error; so is the first sound that is longer than speech has them.
  */
 #ifndef LABIAL_EXAMPLE_MOUTH_H
 #define LABIAL_EXAMPLE_MOUTH_H
@@ -34,6 +34,7 @@ typedef struct {
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u]; /* for any model */
     frames_t frames;
     uint32_t laughs; /* so far: each has its own number as seed */
+    int long_named;  /* whether a sound that is too long to be speech was named */
     unsigned unknown_count;
     char unknown[MOUTH_UNKNOWN_MAX][MOUTH_LABEL_MAX + 1];
 } mouth_t;

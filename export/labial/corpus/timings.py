@@ -28,6 +28,8 @@ TOLERANCE = 0.001
 LONGEST = 86400.0
 #: No phoneme is longer, in seconds (LABIAL_DURATION_MAX).
 _LONGEST_PHONEME = 3600
+#: No sound of speech lasts longer, in seconds: one that does was probably told in another unit.
+_LONGEST_SOUND = 10.0
 
 
 class Empty(DataError):
@@ -84,10 +86,11 @@ def phoneme_segments(
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment. A
     silence of more than an hour becomes several; another phoneme of such a length is a DataError.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
-    phoneme, with one warning each.
+    phoneme, with one warning each. The first sound that is longer than speech has them gives a warning, too.
     """
     result: List[Segment] = []
     unknown: Set[str] = set()
+    long_named = False
     previous = 0.0
     for place, item in enumerate(segments, 1):
         label = meaning(item, phone_set, labels)
@@ -109,6 +112,10 @@ def phoneme_segments(
                 raise DataError(path, item.line, f"{where}{item.label!r} lasts {end - previous:g} s, more than the "
                                 f"{_LONGEST_PHONEME} s that a phoneme may")
             previous = _silence(result, previous, end - _LONGEST_PHONEME, phone_set)
+        if end - previous > _LONGEST_SOUND and label != phone_set.silence and not long_named:
+            long_named = True
+            lasts = f"{item.label!r} lasts {end - previous:g} s: is the unit of time right?"
+            warnings.warn(str(DataError(path, item.line, lasts)), stacklevel=2)
         apex = None if item.apex is None else min(max(item.apex, previous), end)
         result.append(Segment(previous, end, label, apex, item.word))
         previous = end
