@@ -28,7 +28,7 @@ from labial.sound.recogniser import (  # noqa: E402
     with_silences,
 )
 from labial.sound.samples import RATE, prepared, read_sound, silences  # noqa: E402
-from labial.sound.words import phrases_of, pronunciations, spelt, words_of  # noqa: E402
+from labial.sound.words import phrases_of, pronunciations, spelt  # noqa: E402
 from test_speak import speak  # noqa: E402
 
 #: What is spoken here; the first in sounds that show on lips, the second with stops behind pauses and between vowels.
@@ -236,10 +236,10 @@ def test_no_gap_whatever_the_silences() -> None:
 
 
 def test_words_of_a_text() -> None:
-    assert words_of("Don\u2019t 'go', Zoë \u2014 my well-known friend!") == [
-        "don't", "go'", "zoe", "my", "well", "known", "friend"]  # fmt: skip
+    assert phrases_of("Don\u2019t 'go', Zoë \u2014 my well-known friend!") == [
+        ["don't", "go'"], ["zoe", "my", "well", "known", "friend"]]  # fmt: skip
     with pytest.raises(LabialError, match="'42'"):
-        words_of("for 42 years")
+        phrases_of("for 42 years")
 
 
 @pytest.mark.parametrize("word", ["ship", "phone", "chip", "street", "make", "ride", "boat", "bed", "fat", "bring",
@@ -310,11 +310,10 @@ def test_what_the_text_lacks_is_heard(tmp_path: Path) -> None:
 
 
 def test_phrases_of_a_text() -> None:
-    """At marks, in even parts where they are long; words are the same."""
+    """At marks, in even parts where they are long."""
     text = "Well, here we are now:\nthe quick brown fox jumps over the lazy dog. It's ten"
     assert phrases_of(text) == [["well"], ["here", "we", "are", "now"], ["the", "quick", "brown", "fox"],
                                 ["jumps", "over", "the", "lazy", "dog"], ["it's", "ten"]]
-    assert words_of(text) == [word for phrase in phrases_of(text) for word in phrase]
 
 
 def test_confidence_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

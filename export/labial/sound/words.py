@@ -44,14 +44,9 @@ _LONGEST = 5
 Lookup = Callable[[str], Optional[str]]
 
 
-def words_of(text: str) -> List[str]:
-    """The words of a text in small letters, as the dictionary writes them. Raises LabialError as :func:`phrases_of`."""
-    return [word for phrase in phrases_of(text) for word in phrase]
-
-
 def phrases_of(text: str) -> List[List[str]]:
-    """The words of a text, as of :func:`words_of`, in phrases: what stands between punctuation marks or in a line, in
-    even parts where it has more than `_LONGEST` words.
+    """The words of a text in small letters, as the dictionary writes them, in phrases: what stands between punctuation
+    marks or in a line, in even parts where it has more than `_LONGEST` words.
 
     Raises LabialError for what cannot be read aloud by rule, figures and other alphabets, and names it.
     """

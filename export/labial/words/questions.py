@@ -102,7 +102,6 @@ class Asked:
                     continue
                 values = [int(value)] * FEATURES
                 self.yes[question, value] = answer(question, values, sounds)
-        self.useful = self.yes.any(axis=1)  #: (QUESTIONS,) whether any value is answered by yes
 
     def counts(self, histogram: np.ndarray) -> np.ndarray:
         """(QUESTIONS, L) of a `histogram` (FEATURES, 64, L), both of whole numbers: how many samples of each label
