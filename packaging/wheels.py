@@ -31,14 +31,16 @@ SOURCES = ("pyproject.toml", "README.md", "LICENSE", "NOTICE", "include", "lib",
 #: Seconds since 1970: the first time that a zip file can name.
 EARLIEST = "315532800"
 
-#: Run by the environment's Python in the sources' folder, with the platform, the compiler's script and the folder.
+#: Run by the environment's Python in the sources' folder, with the platform, the compiler's script and the folder. The
+#: library needs the C library alone; zig would first build, for half a minute, what compilers call beside it.
 BUILD = """
 import sys
 from scikit_build_core.build import build_wheel
 platform, compiler, folder = sys.argv[1:]
 print(build_wheel(folder, {
     "cmake.define.CMAKE_SYSTEM_NAME": "Linux", "cmake.define.CMAKE_SYSTEM_PROCESSOR": platform,
-    "cmake.define.CMAKE_C_COMPILER": compiler, "cmake.define.CMAKE_SHARED_LINKER_FLAGS": "-s",
+    "cmake.define.CMAKE_C_COMPILER": compiler, "cmake.define.CMAKE_SHARED_LINKER_FLAGS": "-s -nostdlib",
+    "cmake.define.CMAKE_C_STANDARD_LIBRARIES": "-lc", "cmake.define.CMAKE_TRY_COMPILE_TARGET_TYPE": "STATIC_LIBRARY",
     "install.strip": "false"}))
 """
 
