@@ -369,7 +369,7 @@ export class Voice<O extends Output = "faps"> {
     /** The sound goes on so many seconds later than it would have, because its next piece came too late: lips wait. Only
      * for a clock that does not stop with the sound, as that of an AudioContext. */
     delay(seconds: number): void;
-    /** Nothing more follows. */
+    /** Nothing more follows. If no message told timings, a warning says so. */
     finish(): void;
     /** Drops what is not yet shown and eases to the neutral face over so many milliseconds, by default 200, rounded up to
      * whole frames, 1 to 1,000. What is told of the cancelled utterance is ignored until begin(). */

@@ -49,6 +49,18 @@ async function told(options) {
 
 const rows = (frames) => Array.from(frames, (faps) => [...faps]);
 
+test("an answer of few messages that told no timings is named at its end, once", async (context) => {
+    const warn = context.mock.method(console, "warn", () => {});
+    for (const [messages, count] of [[[], 0], [[{}], 1], [[{ type: "WordBoundary", offset: 1e6, duration: 3e6, text: "Go." }], 0]]) {
+        const voice = await labial.voice({});
+        for (const message of messages) voice.feed(message);
+        voice.finish();
+        voice.finish();
+        assert.equal(warn.mock.callCount(), count);
+        warn.mock.resetCalls();
+    }
+});
+
 test("the end is told once when all was shown, and not of what was cancelled", async () => {
     for (const cancelled of [false, true]) {
         const voice = await told({});

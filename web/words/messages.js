@@ -10,6 +10,7 @@ export class Messages {
     #labial;
     #format; // null to recognise it by the first message with timings
     #silent = null; // a service whose messages had no timings
+    #hasWarned = false;
     #labels; // the set of labels where the format does not tell it
     #phonemes = new Map(); // of labels: the nearest one takes long to find
     #stats = { messages: 0, told: 0, skipped: 0 };
@@ -47,8 +48,15 @@ export class Messages {
             stats.skipped += odd.count;
         }
         for (const { told } of heard) for (const { items } of told) stats.told += items.length;
-        if (!stats.told && stats.messages === PATIENCE) this.#complain();
+        if (stats.messages === PATIENCE) this.finish();
         return heard.filter(({ told }) => told.length);
+    }
+
+    /** Warns, once, if there were messages and none of them told timings: no more are expected. */
+    finish() {
+        if (!this.#stats.messages || this.#stats.told || this.#hasWarned) return;
+        this.#hasWarned = true;
+        this.#complain();
     }
 
     /** The objects of a message. Bytes that are not JSON are sound. */

@@ -168,6 +168,7 @@ export class Voice extends EventTarget {
 
     finish() {
         this.#open();
+        this.#messages.finish();
         this.#lexicon.wasm.voice_finish(this.#at);
     }
 

@@ -56,6 +56,7 @@ class Messages:
         self._form, self._labels = form, labels
         self._silent: Optional[str] = None  # a service whose messages had no timings
         self._phonemes: Dict[Tuple[str, str], str] = {}
+        self._has_warned = False
         self.stats = Stats()
 
     @property
@@ -78,9 +79,15 @@ class Messages:
             _logger.debug("%s%s", odd.first, f" ({odd.count} items are skipped)" if odd.count > 1 else "")
         count = sum(len(told.items) for one in heard for told in one.told)
         self.stats = self.stats._replace(told=self.stats.told + count)
-        if self.stats.told == 0 and self.stats.messages == _PATIENCE:
-            self._complain()
+        if self.stats.messages == _PATIENCE:
+            self.finish()
         return [one for one in heard if one.told]
+
+    def finish(self) -> None:
+        """Warns, once, if there were messages and none of them told timings: no more are expected."""
+        if self.stats.messages and not self.stats.told and not self._has_warned:
+            self._has_warned = True
+            self._complain()
 
     def _entries(self, message: Any, name: str, odd: Odd) -> List[Entry]:
         """The objects of a message."""

@@ -145,8 +145,9 @@ class Voice:
     @alone
     def finish(self) -> None:
         """Nothing more follows: :attr:`done` tells when all was shown. What is told afterwards nevertheless begins the
-        next utterance."""
+        next utterance. If no message told timings, a warning says so."""
         self._open()
+        self._messages.finish()
         self._checked(self._library.voice_finish(self._memory))
 
     @alone
