@@ -39,3 +39,14 @@ function(labial_sections target)
     target_compile_options(${target} PRIVATE -ffunction-sections -fdata-sections)
   endif()
 endfunction()
+
+# labial_stream_library(<name> <definition>...): what a stream needs, for limits or a lock of its own, on which it and its
+# programs agree.
+function(labial_stream_library name)
+  get_target_property(sources labial LABIAL_STREAM_SOURCES)
+  add_library(${name} STATIC EXCLUDE_FROM_ALL ${sources})
+  target_compile_definitions(${name} PUBLIC ${ARGN})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}/include" "${PROJECT_SOURCE_DIR}/lib/models")
+  labial_target(${name})
+  labial_sections(${name})
+endfunction()
