@@ -32,7 +32,8 @@ SOURCES = ("pyproject.toml", "README.md", "LICENSE", "NOTICE", "include", "lib",
 EARLIEST = "315532800"
 
 #: Run by the environment's Python in the sources' folder, with the platform, the compiler's script and the folder. The
-#: library needs the C library alone; zig would first build, for half a minute, what compilers call beside it.
+#: library calls nothing but the C library; with -nostdlib zig does not first build its compiler's run-time library,
+#: which takes half a minute.
 BUILD = """
 import sys
 from scikit_build_core.build import build_wheel

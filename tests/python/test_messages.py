@@ -170,7 +170,7 @@ def test_silence_is_said_once(message: Any, words: str, caplog: pytest.LogCaptur
 @pytest.mark.parametrize("messages, count", [([], 0), ([GO, {}], 0), ([{}], 1), ([{}] * 60, 1)])
 def test_silence_of_a_short_answer_is_said_at_its_end(messages: List[Any], count: int,
                                                       caplog: pytest.LogCaptureFixture) -> None:
-    """Where fewer than 50 messages told nothing, and once alone."""
+    """One warning, also where fewer than 50 messages told nothing."""
     with caplog.at_level(logging.INFO, "labial"), labial.Voice() as voice:
         for message in messages:
             voice.feed(message)

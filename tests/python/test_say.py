@@ -184,7 +184,7 @@ def test_unknown_labels_are_named_once(text: str, line: int) -> None:
     ("pau:12.0 b:22.0\n", 0, 0),
 ])  # fmt: skip
 def test_times_of_another_unit_are_asked_about(text: str, line: int, seconds: int) -> None:
-    """The first sound that is longer than speech has them is named; not a silence, nor one of just ten seconds."""
+    """The first sound that is too long to be speech is named; not a silence, nor a sound of just ten seconds."""
     done = say(text)
     assert done.returncode == 0 and done.stderr.decode() == (
         f"labial-say: warning: line {line}: 'b' lasts {seconds} s: is the unit of time right?\n" if line else "")

@@ -10,7 +10,7 @@
 
 /* Seconds of motion from which on a warning says why a program takes long. */
 #define LONG 3600u
-/* Milliseconds beyond which no sound of speech lasts: one that does was probably told in another unit. */
+/* Milliseconds. No sound of speech lasts longer; the times of one that does are probably in another unit. */
 #define LONG_SOUND 10000u
 
 const mouth_voice_t mouth_voices[] = { LABIAL_BUNDLED };

@@ -2,7 +2,7 @@
  * mouth.h - phonemes by name in, written frames out: what labial-say and the programs with a speech synthesiser share.
  *
  * A label that the model does not know never stops the mouth: it moves as the nearest phoneme does, and each such label
- * is named once on standard error; so is the first sound that is longer than speech has them.
+ * is named once on standard error; so is the first sound that is too long to be speech.
  */
 #ifndef LABIAL_EXAMPLE_MOUTH_H
 #define LABIAL_EXAMPLE_MOUTH_H

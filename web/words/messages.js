@@ -48,12 +48,12 @@ export class Messages {
             stats.skipped += odd.count;
         }
         for (const { told } of heard) for (const { items } of told) stats.told += items.length;
-        if (stats.messages === PATIENCE) this.finish();
+        if (stats.messages === PATIENCE) this.expectTimings();
         return heard.filter(({ told }) => told.length);
     }
 
-    /** Warns, once, if there were messages and none of them told timings: no more are expected. */
-    finish() {
+    /** Warns, once, if there were messages and none of them told timings. */
+    expectTimings() {
         if (!this.#stats.messages || this.#stats.told || this.#hasWarned) return;
         this.#hasWarned = true;
         this.#complain();

@@ -168,7 +168,7 @@ export class Voice extends EventTarget {
 
     finish() {
         this.#open();
-        this.#messages.finish();
+        this.#messages.expectTimings();
         this.#lexicon.wasm.voice_finish(this.#at);
     }
 

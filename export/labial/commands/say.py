@@ -104,8 +104,8 @@ def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
 
 
 def _expect_words(options: argparse.Namespace, timings: Timings) -> None:
-    """Raises LabialError where nothing is said: the text has no letters, or none that English has, for which the
-    library's tables move the lips a little all the same."""
+    """Raises LabialError where nothing is said: all is silence, or a text that is read as English has no letter or
+    digit of English. For such a text the library's tables would move the lips a little all the same."""
     is_english = options.language == "en" and not (options.voice or "").startswith("espeak:")
     is_read = not is_english or re.search("[A-Za-z0-9]", options.text) is not None
     if is_read and any(label != "SIL" for label, _ in timings):

@@ -80,11 +80,11 @@ class Messages:
         count = sum(len(told.items) for one in heard for told in one.told)
         self.stats = self.stats._replace(told=self.stats.told + count)
         if self.stats.messages == _PATIENCE:
-            self.finish()
+            self.expect_timings()
         return [one for one in heard if one.told]
 
-    def finish(self) -> None:
-        """Warns, once, if there were messages and none of them told timings: no more are expected."""
+    def expect_timings(self) -> None:
+        """Warns, once, if there were messages and none of them told timings."""
         if self.stats.messages and not self.stats.told and not self._has_warned:
             self._has_warned = True
             self._complain()

@@ -28,7 +28,7 @@ TOLERANCE = 0.001
 LONGEST = 86400.0
 #: No phoneme is longer, in seconds (LABIAL_DURATION_MAX).
 _LONGEST_PHONEME = 3600
-#: No sound of speech lasts longer, in seconds: one that does was probably told in another unit.
+#: Seconds. No sound of speech lasts longer; the times of one that does are probably in another unit.
 _LONGEST_SOUND = 10.0
 
 
@@ -86,7 +86,7 @@ def phoneme_segments(
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment. A
     silence of more than an hour becomes several; another phoneme of such a length is a DataError.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
-    phoneme, with one warning each. The first sound that is longer than speech has them gives a warning, too.
+    phoneme, with one warning each. The first sound that is too long to be speech gives a warning, too.
     """
     result: List[Segment] = []
     unknown: Set[str] = set()

@@ -147,7 +147,7 @@ class Voice:
         """Nothing more follows: :attr:`done` tells when all was shown. What is told afterwards nevertheless begins the
         next utterance. If no message told timings, a warning says so."""
         self._open()
-        self._messages.finish()
+        self._messages.expect_timings()
         self._checked(self._library.voice_finish(self._memory))
 
     @alone
