@@ -16,11 +16,6 @@ VERSIONS: Dict[str, str] = {
     "export/labial/__init__.py": r'^__version__ = "([^"]*)"$',
     "idf_component.yml": r'^version: "([^"]*)"$',
     "library.json": r'^  "version": "([^"]*)",$',
-    "web/package.json": r'^  "version": "([^"]*)",$',
-    "web/laughter/package.json": r'^  "version": "([^"]*)",$',
-    "web/hearing/package.json": r'^  "version": "([^"]*)",$',
-    "web/hearing-host/package.json": r'^  "version": "([^"]*)",$',
-    "web/words/package.json": r'^  "version": "([^"]*)",$',
 }
 #: The project's address, unless a release names another.
 URL = "https://example.org/labial"

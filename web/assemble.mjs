@@ -7,6 +7,7 @@
 //     node assemble.mjs table FILE JSON               the table of services, without what only readers of it need
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
 //     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
+//     node assemble.mjs manifest FOLDER PACKAGES NAME VERSION   package.json, and index.d.ts where PACKAGES has it
 import { readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { constants, deflateRawSync } from "node:zlib";
@@ -111,6 +112,17 @@ function licence(file, code, notice, ...names) {
     writeFileSync(file, `${read(code)}\n${listed}${inside.map((text) => text.trimEnd()).join("\n\n")}\n`);
 }
 
+/** What packages.json says of a package, and what is the same for all. */
+function manifest(folder, packages, name, version) {
+    const { declares, exports, sideEffects = false, ...own } = JSON.parse(read(packages))[name];
+    const main = { types: "./index.d.ts", default: "./index.js" };
+    const written = { name, version, ...own, type: "module", main: main.default, types: main.types,
+        exports: { ".": main, ...exports, "./package.json": "./package.json" },
+        files: ["*.js", "*.js.map", "*.d.ts"], engines: { node: ">=20.19" }, sideEffects };
+    writeFileSync(join(folder, "package.json"), `${JSON.stringify(written, null, 2)}\n`);
+    if (declares) writeFileSync(join(folder, "index.d.ts"), `${declares.join("\n")}\n`);
+}
+
 const [, , what, ...rest] = process.argv;
 const data = (file, wasm, notice) => packed(file, readFileSync(wasm), notice);
-await { scripts, text, data, table, model, faces, licence }[what](...rest);
+await { scripts, text, data, table, model, faces, licence, manifest }[what](...rest);

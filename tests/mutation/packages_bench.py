@@ -45,9 +45,8 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "web/words/messages.js": ("voices.test.mjs", "words.test.mjs", "test_npm_words.py"),
     "web/words/readers.js": ("words.test.mjs", "test_npm_words.py"),
 }
-#: The packages of npm and the folders of their sources.
-PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing",
-            "npm-hearing-host": "web/hearing-host", "npm-laughter": "web/laughter"}
+#: The packages of npm that have scripts, and the folders of their sources.
+PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing"}
 #: A test hangs if it takes this many times the processor time of the unchanged sources.
 PATIENCE, LEAST_SECONDS = 5.0, 20.0
 
@@ -130,7 +129,7 @@ class Packages:
                             ignore=shutil.ignore_patterns("__pycache__"))
             (folder / "export" / "models").symlink_to(ROOT / "export" / "models")
         elif file.startswith("web/"):
-            for package in PACKAGES:
+            for package in (*PACKAGES, "npm-hearing-host", "npm-laughter"):
                 shutil.copytree(self.npm.with_name(package), folder / package)
 
     def _places(self, folder: Path, file: str) -> List[Path]:

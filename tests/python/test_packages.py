@@ -61,11 +61,6 @@ def manifest_versions(root: Path) -> Dict[str, str]:
     return {
         "library.json": json.loads((root / "library.json").read_text(encoding="utf-8"))["version"],
         "idf_component.yml": re.findall(r'^version: "(.*)"$', component, re.MULTILINE)[0],
-        "npm": json.loads((root / "web" / "package.json").read_text(encoding="utf-8"))["version"],
-        "laughter": json.loads((root / "web/laughter/package.json").read_text(encoding="utf-8"))["version"],
-        "hearing": json.loads((root / "web/hearing/package.json").read_text(encoding="utf-8"))["version"],
-        "host": json.loads((root / "web/hearing-host/package.json").read_text(encoding="utf-8"))["version"],
-        "words": json.loads((root / "web/words/package.json").read_text(encoding="utf-8"))["version"],
         "__init__.py": re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE)[0],
         "pack.py": pack("version", root=root).strip(),
     }
@@ -83,11 +78,11 @@ def test_every_manifest_has_the_headers_version() -> None:
 
 
 def test_version_is_set_everywhere(tmp_path: Path) -> None:
-    for name in ("include", "packaging", "web", "export/labial/__init__.py", "library.json", "idf_component.yml"):
+    for name in ("include", "packaging", "export/labial/__init__.py", "library.json", "idf_component.yml"):
         target = tmp_path / name
         target.parent.mkdir(parents=True, exist_ok=True)
         (shutil.copytree if (SOURCE / name).is_dir() else shutil.copyfile)(SOURCE / name, target)
-    assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 9
+    assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 4
     assert header_version(tmp_path) == "12.3.45"
     assert set(manifest_versions(tmp_path).values()) == {"12.3.45"}
     before = (tmp_path / "library.json").read_bytes()

@@ -158,7 +158,7 @@ def locked(path: Path) -> Dict[str, str]:
 
 def test_manifests_name_the_licence_of_the_data() -> None:
     """The speech model is in every package but that of laughter."""
-    for name in ("pyproject.toml", "library.json", "idf_component.yml", "web/package.json",
+    for name in ("pyproject.toml", "library.json", "idf_component.yml", "web/packages.json",
                  "packaging/arduino.py"):  # fmt: skip
         assert "MIT AND CC-BY-4.0" in (SOURCE / name).read_text(encoding="utf-8"), name
 

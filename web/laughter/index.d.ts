@@ -1,3 +1,0 @@
-/** The laughter model, as Labial.load() takes it. */
-declare const laughter: string;
-export default laughter;

@@ -1,2 +1,0 @@
-/** What Labial.load() takes as `words`; programs call labial.words(). */
-export function words(...given: any[]): Promise<unknown>;
