@@ -201,6 +201,15 @@ def test_pinyin_is_read() -> None:
 
 
 @needs_espeak
+def test_chinese_of_hong_kong_is_cantonese() -> None:
+    for language in ("zh-yue", "zh-HK", "zh-Hant-MO"):
+        assert labial.phonemes("你好 媽媽", language=language) == labial.phonemes("你好 媽媽", language="yue")
+        assert languages.speakable("你好", f"{language}+f3") == ("你好", "yue+f3")
+    for language in ("zh-TW", "zh-Hans", "cmn"):
+        assert labial.phonemes("你好 媽媽", language=language) == "N IY HH AW M AA M AA".split()
+
+
+@needs_espeak
 def test_words_that_cannot_be_spoken_are_said_once(monkeypatch: pytest.MonkeyPatch,
                                                    caplog: pytest.LogCaptureFixture) -> None:
     """They move the lips for their time, as words of other scripts do."""

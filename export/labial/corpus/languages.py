@@ -33,6 +33,8 @@ _ALIKE = 0.5
 
 _VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
 _CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
+#: Chinese that is Cantonese: as services name it, and where it is what people speak.
+_CANTONESE = re.compile(r"(?:zh|zho)(?:-hant)?-(?:yue|hk|mo)(?:-.*)?", re.IGNORECASE)
 _JAPANESE = re.compile(r"ja(?:-.*)?")
 #: espeak-ng's voice that reads pinyin as such; "cmn" reads it as English.
 _PINYIN_VOICE = "cmn-latn-pinyin"
@@ -66,6 +68,7 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
         return []
     if not _VOICE.fullmatch(language):
         raise LabialError(f"{language!r:.40} is no language of espeak-ng")
+    language = "yue" if _CANTONESE.fullmatch(language) else language
     given = [unicodedata.normalize("NFC", word) for word in words]
     if _CHINESE.fullmatch(language):
         found = [_by_pinyin(word) for word in given]
@@ -85,6 +88,8 @@ def speakable(text: str, voice: str) -> Tuple[str, str]:
     """A text as espeak-ng can say it aloud, and the voice that does: Chinese is written in pinyin, with tones, and
     Japanese in kana. Every other text and voice stays as it is. `voice` may have a variant ("cmn+f3")."""
     language, plus, variant = voice.partition("+")
+    if _CANTONESE.fullmatch(language):
+        return text, f"yue{plus}{variant}"
     if _CHINESE.fullmatch(language):
         return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if _HAN.search(text) else (text, voice)
     if _JAPANESE.fullmatch(language):
