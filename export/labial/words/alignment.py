@@ -24,6 +24,8 @@ SOUNDS = PAIR + PAIR * PAIR
 _ROUNDS = 14
 _RARE_PAIRS = {6: 30.0, 9: 80.0}
 _RARE_SINGLE = (9, 3.0)
+#: Of a sound that a letter never has, where a word cannot be aligned otherwise.
+_LOOSE = 1e-9
 #: Probabilities to begin with.
 _START = {"silent": 0.2, "single": 0.02, "pair": 0.0002}
 
@@ -110,6 +112,13 @@ def learn(entries: Sequence[Entry]) -> np.ndarray:
         table[0] = 0.0
         probability = table / np.maximum(table.sum(axis=1, keepdims=True), 1e-300)
     return probability
+
+
+def loosened(probability: np.ndarray, sounds: Sequence[int]) -> np.ndarray:
+    """(letters, SOUNDS) the same, but any letter may be any of `sounds`, where nothing more probable is possible."""
+    loose = probability.copy()
+    loose[:, list(sounds)] = np.maximum(loose[:, list(sounds)], _LOOSE)
+    return loose
 
 
 def align(entries: Sequence[Entry], probability: np.ndarray) -> List[Optional[Tuple[int, ...]]]:

@@ -9,7 +9,7 @@ import numpy as np
 from labial.corpus.phonesets import SPEECH
 from labial.errors import ModelError
 from labial.words import decoder
-from labial.words.alignment import align, learn
+from labial.words.alignment import align, learn, loosened
 from labial.words.dictionary import LETTERS, Entry, pronunciations
 from labial.words.hashing import multiplier_for
 from labial.words.questions import LABELS_MOST, Asked, features
@@ -37,8 +37,8 @@ def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAV
     """The tables of a dictionary; of the `common` words, in their order, the first `exceptions` that the trees read
     wrongly become exceptions. `report` is told what is being done."""
     report = report or _silent
-    tables, aligned = _trees(entries, leaves, report)
-    found = _exceptions(tables, entries, aligned, common, exceptions)
+    tables, aligned, loose = _trees(entries, leaves, report)
+    found = _exceptions(tables, entries, _completed(entries, aligned, loose), common, exceptions)
     report(f"{tables.leaves} leaves, {len(tables.sounds)} labels, {len(found)} exceptions")
     about: Dict[str, Any] = {"entries": len(entries), "words": sum(entry.variant == 0 for entry in entries),
                              "not_aligned": sum(item is None for item in aligned), "leaves": leaves,
@@ -50,7 +50,7 @@ def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAV
 
 def held_out(entries: Sequence[Entry], *, leaves: int = LEAVES, report: Optional[Report] = None) -> Dict[str, float]:
     """How well trees that were trained on 85 % of the words read the others, without exceptions (:func:`score`)."""
-    tables, _ = _trees([entry for entry in entries if not entry.held_out], leaves, report or _silent)
+    tables, _, _ = _trees([entry for entry in entries if not entry.held_out], leaves, report or _silent)
     return score(tables, pronunciations([entry for entry in entries if entry.held_out]))
 
 
@@ -82,10 +82,11 @@ def _distance(a: Sequence[int], b: Sequence[int]) -> int:
     return row[-1]
 
 
-def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordTables, Sounds]:
-    """Tables without exceptions, and the alignment of each entry."""
+def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordTables, Sounds, np.ndarray]:
+    """Tables without exceptions, the alignment of each entry, and probabilities that can align the others."""
     report(f"aligning {len(entries)} pronunciations")
-    aligned = align(entries, learn(entries))
+    probability = learn(entries)
+    aligned = align(entries, probability)
     sounds, labels = _labels(aligned)
     asked = Asked(sounds)
     report(f"{len(sounds)} labels; growing trees")
@@ -94,7 +95,7 @@ def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordT
     first = np.cumsum([0, *(len(tree.question) for tree in pruned)])
     question, yes, no, label = (np.concatenate([getattr(tree, name) for tree in pruned])
                                 for name in ("question", "yes", "no", "label"))
-    return WordTables(sounds, first, question, yes, no, label, {}), aligned
+    return WordTables(sounds, first, question, yes, no, label, {}), aligned, loosened(probability, sounds)
 
 
 def _labels(aligned: Sounds) -> Tuple[Tuple[int, ...], Dict[int, int]]:
@@ -120,9 +121,16 @@ def _samples(entries: Sequence[Entry], aligned: Sounds, labels: Dict[int, int]) 
             weights[letter].append(OTHER if entry.variant else FIRST)
     missing = [LETTERS[letter] for letter in range(1, len(LETTERS)) if not rows[letter]]
     if missing:
-        raise ModelError(f"no word of the dictionary has the letter {missing[0]}")
+        raise ModelError(f"no word of the dictionary that could be aligned has the letter {missing[0]}")
     return [Samples(np.array(rows[letter], dtype=np.uint8), np.array(chosen[letter]), np.array(weights[letter]))
             for letter in range(1, len(LETTERS))]
+
+
+def _completed(entries: Sequence[Entry], aligned: Sounds, loose: np.ndarray) -> Sounds:
+    """The alignments, and of entries that have none, such as "of", those with the probabilities `loose`."""
+    others = [place for place, sounds in enumerate(aligned) if sounds is None]
+    found = dict(zip(others, align([entries[place] for place in others], loose)))
+    return [found.get(place, sounds) for place, sounds in enumerate(aligned)]
 
 
 def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, common: Sequence[str],
