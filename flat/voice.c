@@ -135,9 +135,9 @@ int voice_cancelled(const labial_voice_t *voice)
     return voice->cancelled;
 }
 
-int voice_eases(const labial_voice_t *voice)
+int voice_ease(labial_voice_t *voice, int16_t *faps)
 {
-    return voice->cancelled && voice->step < voice->steps;
+    return labial_voice_ease(voice, faps);
 }
 
 void voice_counts(const labial_voice_t *voice, uint32_t *out)

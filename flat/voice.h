@@ -45,18 +45,16 @@ FLAT(voice_frame) int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *
 FLAT(voice_visemes) int voice_visemes(const labial_voice_t *voice, uint8_t *shares);
 
 /* The number of the frame that comes next; whether nothing more moves; whether it was finished, or cancelled, and
-   nothing
- * begun since; whether it eases to rest after that; items told and skipped, messages dropped. */
+ * nothing begun since; the next pose on the way to rest after that; items told and skipped, messages dropped. */
 FLAT(voice_next) uint32_t voice_next(const labial_voice_t *voice);
 FLAT(voice_done) int voice_done(labial_voice_t *voice);
 FLAT(voice_finished) int voice_finished(const labial_voice_t *voice);
 FLAT(voice_cancelled) int voice_cancelled(const labial_voice_t *voice);
-FLAT(voice_eases) int voice_eases(const labial_voice_t *voice);
+FLAT(voice_ease) int voice_ease(labial_voice_t *voice, int16_t *faps);
 FLAT(voice_counts) void voice_counts(const labial_voice_t *voice, uint32_t *out);
 
 /* A model whose tables were copied from another module's memory, `further` bytes behind where they were there (modulo
-   the
- * size of addresses): sets their addresses. */
+ * the size of addresses): sets their addresses. */
 FLAT(voice_move) void voice_move(labial_model_t *model, size_t further);
 
 #endif

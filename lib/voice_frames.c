@@ -242,3 +242,16 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
     memcpy(faps, voice->shown, sizeof voice->shown);
     return LABIAL_OK;
 }
+
+int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS])
+{
+    if (!voice || !faps)
+        return LABIAL_ERROR_NULL;
+    if (!voice->model)
+        return LABIAL_ERROR_STATE;
+    if (voice->streaming || voice->step == voice->steps)
+        return LABIAL_DONE;
+    show_frame(voice);
+    memcpy(faps, voice->shown, sizeof voice->shown);
+    return LABIAL_OK;
+}

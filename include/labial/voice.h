@@ -231,6 +231,15 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS]);
 
 /*
+ * The next pose on the way to the neutral face after labial_voice_cancel(), for a clock that stands with the sound: once
+ * in each frame's time in which labial_voice_next() gives none. It is no frame of the sound, so that what is told for
+ * the time at which the clock stands begins there.
+ *
+ * Returns LABIAL_OK, LABIAL_DONE where there is no such way or at its end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
+
+/*
  * The shares of the sounds (labial/visemes.h) in the frame that labial_voice_next() gave last. `shares` are those of the
  * frame before, all 0 at first: while a frame fades to what became known, or to rest, each changes by a quarter of
  * LABIAL_VISEME_ONE at most, so that no tongue jumps. For models of the ARPABET; others are silent.

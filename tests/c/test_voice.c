@@ -1035,6 +1035,32 @@ TEST_AFTER(begin_frames, a_cancel_eases_to_rest)
     assert_memory_equal(shown[70], wanted[70], 51 * sizeof *shown);
 }
 
+/* While the clock stands, the face goes the same way to rest as by frames, and the next answer waits for its sound. */
+TEST_AFTER(begin_frames, a_face_eases_while_the_clock_stands)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    tell_sentence(0, SENTENCE);
+    show_until(900);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* nothing was cancelled */
+    labial_voice_t twin = voice;
+    assert_int_equal(labial_voice_cancel(&twin, 90), LABIAL_OK);
+    assert_int_equal(labial_voice_cancel(&voice, 90), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 920, 0), LABIAL_OK);
+    tell_sentence(0, SENTENCE);
+    for (unsigned i = 0; i < 5; i++) {
+        int16_t wanted_faps[LABIAL_CHANNELS];
+        assert_int_equal(labial_voice_next(&voice, 900, NULL, faps), LABIAL_WAITING);
+        assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_OK);
+        assert_int_equal(labial_voice_next(&twin, 920 + 20 * i, NULL, wanted_faps), LABIAL_OK);
+        assert_memory_equal(faps, wanted_faps, sizeof faps);
+    }
+    assert_memory_equal(faps, rest, sizeof rest);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    want(920);
+    show_until(2200);
+    assert_memory_equal(shown[60], wanted[60], 51 * sizeof *shown);
+}
+
 TEST_AFTER(begin_frames, an_end_right_after_a_cancel_waits_for_the_face)
 {
     tell_sentence(0, SENTENCE);
@@ -1196,6 +1222,7 @@ TEST_AFTER(begin, misuse)
         assert_int_equal(labial_voice_finish(bad), error);
         assert_int_equal(labial_voice_cancel(bad, 0), error);
         assert_int_equal(labial_voice_next(bad, 0, NULL, faps), error);
+        assert_int_equal(labial_voice_ease(bad, faps), error);
         assert_int_equal(labial_voice_done(bad), 0);
         assert_int_equal(labial_voice_counts(bad).told, 0);
     }
@@ -1218,6 +1245,7 @@ TEST_AFTER(begin, misuse)
     assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_CLOCK + 1, 0), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_voice_next(&voice, LABIAL_VOICE_CLOCK + 1, NULL, faps), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_voice_next(&voice, 0, NULL, NULL), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_voice_ease(&voice, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_voice_word(&voice, "a", 1, 100, LABIAL_VOICE_OPEN), LABIAL_OK);
     assert_int_equal(labial_voice_numbers(&voice, NULL), LABIAL_OK);
     assert_int_equal(labial_voice_numbers(&voice, numbers), LABIAL_OK); /* every word is now of silences and M */

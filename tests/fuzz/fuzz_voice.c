@@ -115,7 +115,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             (void)labial_voice_begin(&voice, call < 128u ? LABIAL_VOICE_BEHIND : clock + byte(&input) * 10u, call >> 5);
             break;
         case 3:
-            if (call < 64u)
+            if (call < 16u)
+                (void)labial_voice_ease(&voice, faps);
+            else if (call < 64u)
                 REQUIRE(labial_voice_cancel(&voice, byte(&input) * 8u) == LABIAL_OK);
             else if (call < 128u)
                 REQUIRE(labial_voice_finish(&voice) == LABIAL_OK);

@@ -174,6 +174,7 @@ test("a cancelled voice eases although its sound has stopped, and an element may
     assert.ok(voice.done && performance.now() - begin > 80);
     assert.deepEqual([...voice.at()], new Array(13).fill(0));
     const { number } = voice;
+    assert.equal(number, 15, "easing is no frame of the sound");
     Object.assign(element, { currentTime: 0 });
     voice.begin(0);
     for (const word of WORDS) voice.say(...word);
@@ -183,6 +184,30 @@ test("a cancelled voice eases although its sound has stopped, and an element may
     const fresh = rows((await told({})).played(0.6));
     const apart = Math.max(...frames.at(-1).map((value, i) => Math.abs(value - fresh[30][i])));
     assert.ok(apart < 40, "but for the beginning, the motion is that of the words alone");
+});
+
+test("a mouth closes although the clock stands, also if the next answer has begun", async () => {
+    for (const begins of ["at once", "on the way"]) {
+        let heard = 0.3;
+        const voice = await told({ clock: () => heard });
+        for (let time = 0; time <= heard; time += 0.02) voice.at(time);
+        assert.ok([...voice.at()].some((value) => Math.abs(value) > 100));
+        voice.cancel(100);
+        await new Promise((resolve) => setTimeout(resolve, begins === "at once" ? 0 : 50));
+        voice.at();
+        voice.begin(heard);
+        for (const [text, start, end] of WORDS) voice.say(text, start + 1, end + 1);
+        const begin = performance.now();
+        while ([...voice.at()].some(Boolean) && performance.now() - begin < 5000) {
+            await new Promise((resolve) => setTimeout(resolve, 10));
+        }
+        assert.ok(performance.now() - begin < 5000, begins);
+        assert.ok(!voice.done && Math.abs(voice.time - heard) < 0.021);
+        for (; heard < 1.9; heard += 0.02) voice.at();
+        const fresh = (await told({})).at(heard - 1.3);
+        const apart = [...voice.at()].map((value, i) => Math.abs(value - fresh[i]));
+        assert.ok(Math.max(...apart) < 8, `${begins}: the answer is where its sound is`);
+    }
 });
 
 test("following yields every frame once, in time, and ends", async () => {
@@ -207,8 +232,9 @@ test("following yields every frame once, in time, and ends", async () => {
     interrupted.played(0.3);
     interrupted.finish();
     interrupted.cancel(50);
-    for await (const faps of interrupted.follow(() => 0.3)) assert.ok(faps);
-    assert.ok(interrupted.done && interrupted.number >= 17);
+    const poses = [];
+    for await (const faps of interrupted.follow(() => 0.3)) poses.push([...faps]);
+    assert.ok(interrupted.done && poses.length === 3 && poses.at(-1).every((value) => value === 0));
     const stopped = await told({});
     for await (const faps of stopped.follow(() => 0.1)) {
         assert.ok(faps);

@@ -123,6 +123,9 @@ int main(void)
     any_state();
     labial_voice_next(OR_NULL(labial_voice_t *, &voice), (uint64_t)any_uint32 << 32 | any_uint32,
                       OR_NULL(uint32_t *, &frame), OR_NULL(int16_t *, faps));
+    labial_voice_ease(&unprepared, faps);
+    any_state();
+    labial_voice_ease(OR_NULL(labial_voice_t *, &voice), OR_NULL(int16_t *, faps));
     any_state();
     labial_voice_begin_fade(&voice, any_uint32);
     any_state();

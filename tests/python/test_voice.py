@@ -11,6 +11,7 @@ import math
 import random
 import subprocess
 import sys
+import time
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import pytest
@@ -170,6 +171,29 @@ def test_cancel_is_a_streams() -> None:
         expected = [frame.faps for frame in stream]
     assert before == shown and len(expected) == 15
     assert max(abs(a - b) for one, two in zip(eased, expected) for a, b in zip(one, two)) <= 1
+
+
+@pytest.mark.parametrize("begins", [False, True])
+def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
+    """An interrupted sound stops, and its clock with it; what is told for the next answer waits for its sound."""
+    with labial.Voice() as voice, labial.Voice() as other:
+        voice.push("AA", 0.0, 2.0)
+        shown = played(voice, 0, 0.6)[-1]
+        assert shown[0] > 100
+        voice.cancel(100)
+        if begins:
+            voice.begin(0.6)
+            voice.push("IY", 0.5, 1.0)
+        poses: List[labial.Frame] = []
+        end = time.monotonic() + 5.0
+        while len(poses) < 5 and time.monotonic() < end:
+            poses += voice.played(0.6)
+            time.sleep(0.005)
+        assert [pose.faps for pose in poses][-1] == (0,) * 13 != poses[0].faps
+        assert {pose.number for pose in poses} == {30} and voice.played(0.6) == [] and voice.time == 0.62
+        assert voice.done is not begins
+        other.push("IY", 1.1, 1.6)
+        assert not begins or played(voice, 0.62, 1.6)[-30:] == played(other, 0, 1.6)[-30:]
 
 
 def test_done() -> None:

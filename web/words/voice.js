@@ -61,7 +61,9 @@ export class Voice extends EventTarget {
     #clock; // null without one
     #given; // as it was given
     #origin; // what the clock tells when the voice's time is 0; null until begin() says
-    #eased = [0, 0]; // of the last cancel: the voice's time, and that of the program, milliseconds
+    #cancel = 0; // when the last cancel was, milliseconds,
+    #eased = 0; // and the poses since then
+    #heard = -1; // the time of the call before
     #settings; // of push()
     #model;
     #messages;
@@ -176,17 +178,17 @@ export class Voice extends EventTarget {
         this.#open();
         const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), CANCEL_MAX);
         this.#lexicon.wasm.voice_cancel(this.#at, Math.ceil(length - 1e-6));
-        this.#eased = [this.#next / this.fps, Date.now()];
+        [this.#cancel, this.#eased] = [Date.now(), 0];
     }
 
     // ---- What is shown
 
     played(seconds = this.now) {
-        return this.#due(seconds, (faps) => this.#form(faps));
+        return this.#poses(seconds, (faps) => this.#form(faps));
     }
 
     at(seconds = this.now) {
-        this.#due(seconds, () => null);
+        this.#poses(seconds, () => null);
         const faps = this.#shown ?? new Array(CHANNELS).fill(0);
         if (this.#output !== "faps") return this.#labial.convert(faps, this.#output, this.#frame, this.#sounds);
         this.#frame.set(faps);
@@ -203,7 +205,7 @@ export class Voice extends EventTarget {
         }
         const own = clock ? clockOf(this.#tools, clock) : this.#clock;
         while (!this.#closed) {
-            const heard = this.#heard(own);
+            const heard = this.#read(own);
             for (const frame of this.played(heard)) {
                 yield frame;
                 if (this.#closed) return;
@@ -224,7 +226,7 @@ export class Voice extends EventTarget {
     }
 
     get now() {
-        return this.#heard(this.#clock);
+        return this.#read(this.#clock);
     }
 
     get clock() {
@@ -270,15 +272,11 @@ export class Voice extends EventTarget {
         this.#checked(this.#lexicon.wasm.voice_begin(this.#at, after, this.#identity(utterance)));
     }
 
-    /** What a clock tells. While the face eases after a cancel, its sound may have stopped: then time goes on. */
-    #heard(clock) {
+    #read(clock) {
         if (!clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
-        const heard = clock.read();
-        if (this.#closed || !this.#lexicon.wasm.voice_eases(this.#at) || this.#origin === null) return heard;
-        const [time, begin] = this.#eased;
-        const eased = this.#origin + time + (Date.now() - begin) / 1000;
-        return heard > eased ? heard : eased;
+        return clock.read();
     }
+
 
     /** A frame in the voice's output. */
     #form(faps) {
@@ -384,28 +382,48 @@ export class Voice extends EventTarget {
         return at;
     }
 
-    /** What `take` makes of the frames that became due. */
-    #due(seconds, take) {
+    /** What `take` makes of the poses that are due. After a cancel the clock may stand with its sound: then the face eases
+     * by the program's time. */
+    #poses(seconds, take) {
         this.#open();
-        if (seconds === null || this.#origin === null) return [];
-        if (typeof seconds !== "number" || Number.isNaN(seconds)) {
+        if (seconds !== null && (typeof seconds !== "number" || Number.isNaN(seconds))) {
             throw new TypeError(`the time is ${this.#tools.shown(seconds)}, not a number of seconds or null`);
         }
-        const heard = seconds - this.#origin;
+        const poses = seconds === null || this.#origin === null ? [] : this.#due(seconds - this.#origin, take);
+        const stands = seconds === null || seconds <= this.#heard;
+        const due = Math.floor((Date.now() - this.#cancel) / 1000 * this.fps);
+        while (stands && this.#eased < due && this.#eases()) poses.push(this.#take(take));
+        this.#heard = seconds ?? this.#heard;
+        return poses;
+    }
+
+    #eases() {
+        return this.#lexicon.wasm.voice_ease(this.#at, this.#faps) === 0;
+    }
+
+    /** What `take` makes of the frames that became due when `heard` seconds of the voice were heard. */
+    #due(heard, take) {
         if (heard > LATEST) throw new RangeError(`${heard} s is more than a year`);
         const last = heard >= 0 ? Math.floor(heard * this.fps + 1e-6) : -1;
         if (last < this.#next) return [];
         const frames = [];
         while (this.#checked(this.#lexicon.wasm.voice_frame(this.#at, last, this.#faps)) === 0) {
-            this.#shown = Int16Array.from(this.#lexicon.memory.int16(this.#faps, CHANNELS));
-            this.#lexicon.wasm.voice_visemes(this.#at, this.#shares);
-            this.#sounds = this.#lexicon.memory.bytes.slice(this.#shares, this.#shares + VISEMES);
             this.#number = this.#next - 1;
-            frames.push(take(this.#shown));
+            frames.push(this.#take(take));
         }
         const done = this.done && !this.#cancelled;
         if (done && !this.#told) this.dispatchEvent(new Event("ended"));
         this.#told = done;
         return frames;
+    }
+
+    /** What `take` makes of the pose that was computed. */
+    #take(take) {
+        const { wasm, memory } = this.#lexicon;
+        this.#shown = Int16Array.from(memory.int16(this.#faps, CHANNELS));
+        wasm.voice_visemes(this.#at, this.#shares);
+        this.#sounds = memory.bytes.slice(this.#shares, this.#shares + VISEMES);
+        this.#eased++;
+        return take(this.#shown);
     }
 }

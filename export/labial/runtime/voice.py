@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import ctypes
 import math
+import time
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
@@ -85,6 +86,8 @@ class Voice:
         else:
             checked(self._library.voice_words(self._memory, self._speaker.own.place))
         self._faps, self._shares = (ctypes.c_int16 * CHANNELS)(), (ctypes.c_uint8 * VISEMES)()
+        self._cancelled, self._eased = 0.0, 0  # when the last cancel was, and the poses since then
+        self._heard = -math.inf  # the time of the call before
 
     # ---- What becomes known
 
@@ -158,6 +161,7 @@ class Voice:
         self._open()
         length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
         self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
+        self._cancelled, self._eased = time.monotonic(), 0
 
     # ---- What is shown
 
@@ -166,20 +170,22 @@ class Voice:
         """The frames that became due since the last call, when so many seconds of the sound were heard; usually none
         to three.
 
-        A clock that goes back, or None from one that has not begun, yields none. More than a second after the last
-        call, only the latest frame is returned. Raises LabialError for more than a year and what is no number.
+        A clock that goes back, or None from one that has not begun, yields none; but while it stands with the sound
+        after :meth:`cancel`, the face comes to rest in time that passes. More than a second after the last call, only
+        the latest frame is returned. Raises LabialError for more than a year and what is no number.
         """
         self._open()
-        if seconds is None:
-            return []
-        heard = number(seconds, "a time")
+        heard = -1.0 if seconds is None else number(seconds, "a time")
         if not heard <= _LATEST:
             raise LabialError(f"{heard:g} s is no time")
         frames: List[Frame] = []
         due = math.floor(heard * self.fps + 1e-6)
         while due >= 0 and self._checked(self._library.voice_frame(self._memory, due, self._faps)) == OK:
-            checked(self._library.voice_visemes(self._memory, self._shares))
-            frames.append(Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps), tuple(self._shares)))
+            frames.append(self._frame())
+        passed = math.floor((time.monotonic() - self._cancelled) * self.fps) if heard <= self._heard else 0
+        while self._eased < passed and self._library.voice_ease(self._memory, self._faps) == OK:
+            frames.append(self._frame())
+        self._heard = heard
         return frames
 
     async def follow(self, clock: Callable[[], Optional[float]]) -> AsyncIterator[Frame]:
@@ -245,6 +251,12 @@ class Voice:
         return self._memory is None or bool(self._library.voice_finished(self._memory))
 
     # ---- With the lock held
+
+    def _frame(self) -> Frame:
+        """The pose that was computed."""
+        self._eased += 1
+        checked(self._library.voice_visemes(self._memory, self._shares))
+        return Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps), tuple(self._shares))
 
     def _open(self) -> None:
         if self._memory is None:
