@@ -396,6 +396,8 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
+    /** Nothing has begun since cancel(). */
+    readonly cancelled: boolean;
     /** What became so far of the messages: how many there were; words, phonemes and so on that were told and that made no
      * sense; messages of utterances that are over, and those that came twice. */
     readonly stats: {

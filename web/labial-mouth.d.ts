@@ -32,7 +32,8 @@ export class LabialMouth extends HTMLElement {
     /** Draws the given frame. Throws a TypeError unless there are 13 FAPs. */
     show(faps: Faps | ArrayLike<number>): void;
     /** Interrupts: pauses the sound and eases to the neutral face within so many milliseconds, by default 200. Resolves
-     * when the face is at rest, or when another source is set. */
+     * when the face is at rest, or when another source is set. A voice with a clock stays the source: its next utterance
+     * is drawn. */
     cancel(milliseconds?: number): Promise<void>;
 }
 

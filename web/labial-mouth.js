@@ -108,7 +108,7 @@ class VoicePlayer {
     #voice;
     #clock;
     #begin = 0; // of the easing
-    #cancelled = false;
+    #length = Infinity; // of it, from the cancel on, seconds
 
     constructor(voice) {
         this.#voice = voice;
@@ -120,14 +120,25 @@ class VoicePlayer {
         return this.#clock ? this.#voice.at() : this.#voice.at(this.#begin + seconds);
     }
 
-    over() {
-        return this.#cancelled && this.#voice.done;
+    /** The next utterance may have begun during the easing, and then the voice is not done at its end. */
+    over(seconds) {
+        return this.#length < Infinity && (this.#voice.done || seconds > this.#length);
     }
 
     cancel(milliseconds) {
         this.#begin = Math.max(0, this.#voice.time);
         this.#voice.cancel(milliseconds);
-        this.#cancelled = true;
+        this.#length = milliseconds / 1000 + this.period;
+    }
+
+    /** Whether an utterance has begun since the cancel. */
+    get speaks() {
+        return this.#length < Infinity && !this.#voice.cancelled;
+    }
+
+    /** What plays after a cancel: the same voice, whose clock goes on. */
+    get next() {
+        return this.#clock ? new VoicePlayer(this.#voice) : null;
     }
 }
 
@@ -229,7 +240,7 @@ export class LabialMouth extends Base {
     }
 
     cancel(milliseconds = 200) {
-        if (this.#rest) return this.#rest.promise;
+        if (this.#rest && !this.#player.speaks) return this.#rest.promise;
         this.audio?.pause();
         const eases = Boolean(this.#player?.cancel) && !this.#player.over();
         if (eases) this.#player.cancel(milliseconds);
@@ -289,7 +300,8 @@ export class LabialMouth extends Base {
             if (player !== this.#player) return; // a listener has set another source
         }
         if (over) {
-            if (this.#rest) this.#take(null, null);
+            const next = (this.#rest && player.next) ?? null;
+            if (this.#rest) this.#take(next && this.#source, next);
             if (!audio) return;
         }
         this.#ask();

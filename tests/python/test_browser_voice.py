@@ -90,7 +90,7 @@ window.hear = async (address, text) => {
 /** The page of docs/streams.md as it is. */
 window.shown = [];
 window.talk = (address, text) => talk(address, text, ({ jawOpen }) => shown.push(jawOpen));
-window.ready = true;
+Object.assign(window, { labial, ready: true });
 </script>
 """.replace("RATE", str(elevenlabs.RATE))
 
@@ -183,6 +183,33 @@ def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
         page.wait_for("!face.faps.some(Boolean)")
         page.evaluate("context.resume(), voice.begin(context.currentTime + 0.2), voice.say('Pa', 0, 0.5), 0")
         page.wait_for("Math.abs(face.faps[4]) > 100", 60)
+
+
+ANSWER = """(async () => {
+    const rested = face.cancel(200);
+    voice.begin(context.currentTime);
+    voice.say("Aah", 0, 60);
+    await rested;
+    return [face.voice === voice, voice.cancelled];
+})()"""
+
+
+def test_an_answer_that_begins_at_once_can_be_interrupted(page: Page) -> None:
+    """A face that is cancelled draws the next utterance of its voice, and the next cancel ends that too."""
+    page.evaluate("""(async () => {
+        const context = new AudioContext();
+        const voice = await labial.voice({ clock: context });
+        Object.assign(window, { context, voice });
+        face.voice = voice;
+        voice.begin(context.currentTime);
+        voice.say("Aah", 0, 60);
+    })()""")
+    for _ in range(2):
+        page.wait_for("Math.abs(face.faps[4]) > 100", 60)
+        assert page.evaluate(ANSWER) == [True, False]
+    page.wait_for("Math.abs(face.faps[4]) > 100", 60)
+    assert page.evaluate("face.cancel(200), voice.begin(context.currentTime), face.cancel(200), voice.cancelled")
+    page.wait_for("!face.faps.some(Boolean) && voice.done", 60)
 
 
 def test_stand_in_is_what_readers_expect() -> None:

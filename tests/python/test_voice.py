@@ -191,7 +191,7 @@ def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
             time.sleep(0.005)
         assert [pose.faps for pose in poses][-1] == (0,) * 13 != poses[0].faps
         assert {pose.number for pose in poses} == {30} and voice.played(0.6) == [] and voice.time == 0.62
-        assert voice.done is not begins
+        assert voice.done is not begins and voice.cancelled is not begins
         other.push("IY", 1.1, 1.6)
         assert not begins or played(voice, 0.62, 1.6)[-30:] == played(other, 0, 1.6)[-30:]
 

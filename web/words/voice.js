@@ -151,7 +151,7 @@ export class Voice extends EventTarget {
         }
         if (this.#origin === null) {
             this.#origin = at == null ? this.#clock.read() : this.#moment(at);
-            if (this.#cancelled || utterance != null) this.#begin(0, utterance);
+            if (this.cancelled || utterance != null) this.#begin(0, utterance);
         } else {
             const heard = this.#clock ? (this.#clock.read() ?? 0) : Infinity;
             const shown = this.#next / this.fps;
@@ -241,6 +241,10 @@ export class Voice extends EventTarget {
         return this.#closed || this.#lexicon.wasm.voice_done(this.#at) !== 0;
     }
 
+    get cancelled() {
+        return !this.#closed && this.#lexicon.wasm.voice_cancelled(this.#at) !== 0;
+    }
+
     get stats() {
         this.#open();
         return this.#lexicon.withBytes(12, (at) => {
@@ -261,11 +265,6 @@ export class Voice extends EventTarget {
 
     get #next() {
         return this.#closed ? 0 : this.#lexicon.wasm.voice_next(this.#at);
-    }
-
-    /** Whether the voice was cancelled and no utterance began since. */
-    get #cancelled() {
-        return !this.#closed && this.#lexicon.wasm.voice_cancelled(this.#at) !== 0;
     }
 
     #begin(after, utterance) {
@@ -411,7 +410,7 @@ export class Voice extends EventTarget {
             this.#number = this.#next - 1;
             frames.push(this.#take(take));
         }
-        const done = this.done && !this.#cancelled;
+        const done = this.done && !this.cancelled;
         if (done && !this.#told) this.dispatchEvent(new Event("ended"));
         this.#told = done;
         return frames;

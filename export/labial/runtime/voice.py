@@ -211,6 +211,12 @@ class Voice:
 
     @property
     @alone
+    def cancelled(self) -> bool:
+        """Whether nothing has begun since :meth:`cancel`."""
+        return self._memory is not None and bool(self._library.voice_cancelled(self._memory))
+
+    @property
+    @alone
     def time(self) -> float:
         """When the next frame is due, seconds of the sound."""
         self._open()
