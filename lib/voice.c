@@ -110,6 +110,8 @@ int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t
         if (places > labial_voice_free(voice))
             return LABIAL_ERROR_FULL;
         result = append_behind(voice, identity);
+        if (result == LABIAL_OK)
+            voice->utterances[voice->utterance_count - 1u].early = !identity;
     }
     if (result != LABIAL_OK)
         return result;
@@ -127,6 +129,22 @@ static void place_utterance(labial_voice_t *voice, unsigned position, int64_t or
     utterance->queued = 0;
     end_before(voice, position, origin);
     labial_voice_requeue(voice, position);
+}
+
+/* The position of the last utterance if it was told before labial_voice_begin() said that its sound begins at `at`; else
+ * -1. */
+static int told_before(labial_voice_t *voice, uint64_t at)
+{
+    const unsigned last = voice->utterance_count - 1u;
+    const labial_voice_utterance_t *utterance;
+    if (voice->utterance_count == 0u || at == LABIAL_VOICE_BEHIND)
+        return -1;
+    utterance = voice->utterances + last;
+    if (!utterance->queued || utterance->identity || utterance->places == 0u)
+        return -1;
+    if ((int64_t)at <= utterance->origin) /* nothing of it would be heard */
+        return (int)last;
+    return utterance->early && labial_voice_end(voice, last) > labial_voice_now(voice) ? (int)last : -1;
 }
 
 /* ---- Beginning and end ------------------------------------------------------------------------------------------- */
@@ -187,7 +205,7 @@ int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance)
         return result;
     if (at != LABIAL_VOICE_BEHIND && at > LABIAL_VOICE_CLOCK)
         return LABIAL_ERROR_RANGE;
-    position = utterance ? position_of(voice, utterance) : -1;
+    position = utterance ? position_of(voice, utterance) : told_before(voice, at);
     if (position >= 0 && voice->utterances[position].queued) {
         if (at != LABIAL_VOICE_BEHIND)
             place_utterance(voice, (unsigned)position, (int64_t)at);

@@ -201,7 +201,9 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 /*
  * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
  * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
- * message; that of an utterance that began by itself moves it to `at`. After a cancel, items count again from here on.
+ * message; that of an utterance that began by itself moves it to `at`. So does 0 where the last utterance has no
+ * identity, began by itself, and would not be heard otherwise, or was told after labial_voice_finish() and is not over.
+ * After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
@@ -287,6 +289,7 @@ struct labial_voice_utterance {
     uint8_t kind;        /* that counts */
     uint8_t tail;        /* places of the last item */
     uint8_t queued;      /* it began by itself: behind the one before it */
+    uint8_t early;       /* so, behind labial_voice_finish(), and no message had an identity */
     uint8_t joined;      /* its last message was */
 };
 

@@ -432,6 +432,30 @@ TEST_AFTER(begin, what_is_heard_is_not_moved)
     assert_string_equal(known(), "0-500 M, 500-1400 S, 1400-2000 AA");
 }
 
+/* A client that feeds a message before it begins to play its sound: the message is of that sound. */
+TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
+{
+    tell_one("M", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 0, 0), LABIAL_OK); /* or nothing of it would be heard */
+    assert_string_equal(known(), "0-500 M");
+    assert_int_equal(labial_voice_begin(&voice, 1000, 0), LABIAL_OK); /* that was the first one's sound */
+    tell_one("S", 0, 500);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    play(2000);
+    tell_one("M", 100, 400);
+    assert_string_equal(known(), "0-500 M, 1000-1500 S, 2120-2420 M");
+    play(2200);
+    assert_int_equal(labial_voice_begin(&voice, 2300, 0), LABIAL_OK);
+    tell_one("AA", 400, 800);
+    assert_string_equal(known(), "0-500 M, 1000-1500 S, 2400-2700 M, 2700-3100 AA");
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    tell_one("S", 100, 400); /* behind it, */
+    play(4000);              /* and heard: what begins now is another one */
+    assert_int_equal(labial_voice_begin(&voice, 4500, 0), LABIAL_OK);
+    tell_one("M", 0, 500);
+    assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M");
+}
+
 TEST_AFTER(begin, stale_messages_change_nothing)
 {
     message.utterance = name("a");

@@ -64,7 +64,7 @@ class Oracle:
 
     def __init__(self, options: Dict[str, Any]) -> None:
         self.options = options
-        self.utterances: List[Dict[str, Any]] = [_utterance(0)]
+        self.utterances: List[Dict[str, Any]] = [_utterance(0, True)]
         self.finished = self.cancelled = False
         self.neutral, self.epoch, self.plan = False, -1, []  # the stream: since when, of what
         self.next, self.shown = 0, None
@@ -95,9 +95,20 @@ class Oracle:
             self.insert("phonemes", phoneme, _ms(start), _ms(end))
 
     def begin(self, at: Optional[float] = None) -> None:
+        if at is not None and self.told_before(_ms(at)):
+            self.utterances[-1].update(origin=_ms(at), queued=False, early=False)
+            return
         start = max(self.ends()[-1] if self.utterances else 0, self.next * 20) if at is None else _ms(at)
-        self.utterances.append(_utterance(start))
+        gives_way = self.utterances and not self.utterances[-1]["queued"] and not self.spoken(self.utterances[-1])
+        self.utterances.append(_utterance(start, at is None and not gives_way))
         self.finished = self.cancelled = False
+
+    def told_before(self, at: int) -> bool:
+        """Whether the last utterance was told before its sound began: behind an end and not over, or not to be heard."""
+        if not self.utterances or not self.utterances[-1]["queued"] or not self.spoken(self.utterances[-1]):
+            return False
+        is_early = self.utterances[-1]["early"] and self.ends()[-1] > self.next * 20
+        return is_early or at <= self.utterances[-1]["origin"]
 
     def finish(self) -> None:
         self.finished = True
@@ -111,6 +122,7 @@ class Oracle:
     def listens(self) -> bool:
         if self.finished and not self.cancelled:
             self.begin()
+            self.utterances[-1]["early"] = True
         return not self.cancelled
 
     def insert(self, kind: str, text: str, start: int, end: Optional[int]) -> None:
@@ -213,8 +225,8 @@ class Oracle:
             self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE)
 
 
-def _utterance(origin: int) -> Dict[str, Any]:
-    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": []}
+def _utterance(origin: int, queued: bool) -> Dict[str, Any]:
+    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": [], "queued": queued, "early": False}
 
 
 def _ms(seconds: float) -> int:

@@ -103,6 +103,8 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
                                                 *_sounds(4), _plays(0, 4)]},
     "an utterance cuts the one before": {"steps": [*_sounds(), _plays(0, 0.5), ["begin", 0.84], *_sounds(),
                                                    _plays(0.52, 2.6)]},
+    "told before it begins": {"steps": [*_sounds(), ["begin", 0.0], ["finish"], _plays(0, 1.5), *_sounds(0, 4),
+                                        _plays(1.52, 1.7), ["begin", 2.0], *_sounds(4), _plays(1.72, 4)]},
     "finished, and more": {"steps": [*_sounds(), ["finish"], _plays(0, 1.5), *_sounds(0, 4), _plays(1.52, 2.6)]},
     "a long time before": {"steps": _long()},
     "words are known before": {"words": True, "steps": [*_words(), _plays(0, 3)]},
