@@ -89,6 +89,32 @@ def test_a_clock_that_does_not_pause_goes_on() -> None:
     assert 2 <= asyncio.run(clock()) < 3
 
 
+def test_a_segment_at_another_rate_is_passed_on_whole() -> None:
+    """What a resampler keeps of a segment would be heard before the next one."""
+    class Output(livekit_agent.StandInOutput):
+        async def capture_frame(self, frame: rtc.AudioFrame) -> None:
+            passed[-1] += frame.duration
+
+        def flush(self) -> None:
+            passed.append(0.0)
+
+        def clear_buffer(self) -> None:
+            passed.append(0.0)
+
+    async def run() -> None:
+        lips = livekit_agent.LipsOutput(Output())
+        for ends in (lips.flush, lips.flush, lips.clear_buffer, lips.flush):
+            for _ in range(20):
+                await lips.capture_frame(rtc.AudioFrame(bytes(2 * 1102), 22050, 1, 1102))
+            ends()
+        await asyncio.sleep(0.05)
+
+    passed = [0.0]
+    asyncio.run(run())
+    assert len(passed) == 5 and passed[2] < 1.0
+    assert all(abs(passed[k] - 20 * 1102 / 22050) < 0.005 for k in (0, 1, 3)), passed
+
+
 def test_sentences_of_one_word_are_heard() -> None:
     """A service without times is told in sentences, where each begins; as a word it would silence the sound's lips."""
     async def told() -> int:

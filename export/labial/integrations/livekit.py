@@ -13,6 +13,7 @@ mouth.
 
 from __future__ import annotations
 
+import asyncio
 import time
 from typing import Any, AsyncIterator, List, Optional
 
@@ -39,6 +40,7 @@ class LipsOutput(AudioOutput):
         self.voice = Lips(**options)
         self._delay = delay
         self._resampler: Optional[rtc.AudioResampler] = None
+        self._rest: Optional[asyncio.Task[None]] = None  # passes on what the resampler kept of a segment
         self._segment = False  # within the sound between two flushes
         self._origin = self._queued = 0.0  # seconds of the clock: where the latest segment begins and ends
         self._at, self._moment = 0.0, 0.0  # the clock, and the time at which it was there
@@ -49,6 +51,8 @@ class LipsOutput(AudioOutput):
     async def capture_frame(self, frame: rtc.AudioFrame) -> None:
         """Takes words and the length of the sound, and passes it on."""
         await super().capture_frame(frame)
+        if self._rest is not None:
+            await self._rest
         if not self._segment:
             self._segment = True
             self._origin = self._queued = max(self._queued, self.clock() or 0.0)
@@ -67,13 +71,20 @@ class LipsOutput(AudioOutput):
         super().flush()
         self._segment = False
         self.voice.end_sound()
-        self._sink.flush()
+        if self._resampler is None:
+            self._sink.flush()
+        else:
+            self._rest = asyncio.create_task(self._end(self._resampler.flush()))
+            self._resampler = None
 
     def clear_buffer(self) -> None:
         """An interruption."""
         self.voice.cancel()
         self._hold()
         self._queued, self._segment = self._at, False
+        if self._rest is not None:
+            self._rest.cancel()
+        self._rest = self._resampler = None
         self._sink.clear_buffer()
 
     def pause(self) -> None:
@@ -128,3 +139,9 @@ class LipsOutput(AudioOutput):
         if self._resampler is None:
             self._resampler = rtc.AudioResampler(frame.sample_rate, rate, num_channels=frame.num_channels)
         return list(self._resampler.push(frame))
+
+    async def _end(self, frames: List[rtc.AudioFrame]) -> None:
+        """The last frames of a segment."""
+        for frame in frames:
+            await self._sink.capture_frame(frame)
+        self._sink.flush()
