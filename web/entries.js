@@ -2,7 +2,7 @@
 import { LabialError, shown } from "./memory.js";
 
 /** What is read of a message, as in export/labial/files/limits.py: levels, documents, items, characters of a text. */
-export const LIMITS = { nesting: 64, documents: 1000, items: 10000, text: 1000 };
+export const LIMITS = { nesting: 64, documents: 10000, items: 10000, text: 1000 };
 /** What is no text, as in export/labial/files/grammar.py. */
 const CONTROL = /[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]/;
 const isObject = (value) => typeof value === "object" && value !== null && !Array.isArray(value);

@@ -339,7 +339,7 @@ class Tell {
     /** A field of an object in seconds; null where it may be missing and is, NaN where it makes no sense. */
     #time(field, one, root, odd) {
         const [value, i] = field.found(one);
-        if (value === undefined && field.optional) return null;
+        if (field.optional && (value === undefined || value === null)) return null;
         const divisor = field.divisor(i, one, root);
         if (value === undefined || !divisor) {
             odd.add(one, () => `no field '${divisor ? field.name : field.options[i].name}'`);

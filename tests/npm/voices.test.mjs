@@ -61,6 +61,19 @@ test("an answer of few messages that told no timings is named at its end, once",
     }
 });
 
+test("messages of another service than the first ones are told of once", async (context) => {
+    const warn = context.mock.method(console, "warn", () => {});
+    const first = { alignment: { chars: ["a"], charStartTimesMs: [0], charDurationsMs: [90] } };
+    const other = { type: "timestamps", context_id: "c", word_timestamps: { words: ["go"], start: [0], end: [0.5] } };
+    for (const [format, count] of [["auto", 1], ["elevenlabs", 0]]) {
+        const voice = await labial.voice({ format });
+        for (const message of [first, { word: "go", start: 0.5, end: 0.75 }, other, other]) voice.feed(message);
+        assert.equal(warn.mock.callCount(), count);
+        if (count) assert.match(warn.mock.calls[0].arguments[0], /message 3 .* Cartesia .* ElevenLabs: name the format/);
+        warn.mock.resetCalls();
+    }
+});
+
 test("the end is told once when all was shown, and not of what was cancelled", async () => {
     for (const cancelled of [false, true]) {
         const voice = await told({});
@@ -256,7 +269,7 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
             return [() => voice.push("m", ...times), () => voice.say("m", ...times)];
         }),
         ...[null, undefined, 5, true, "{", "5", "null", [5], [null], [[]], new TextEncoder().encode("{"),
-            new Uint8Array([0x7b, 0xff]), new Array(1001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
+            new Uint8Array([0x7b, 0xff]), new Array(10001).fill({}), `${"[".repeat(100)}${"]".repeat(100)}`,
         ].map((x) => () => voice.feed(x)),
     ];
     for (const call of calls) {

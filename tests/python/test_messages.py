@@ -112,6 +112,7 @@ class _Derived:
     GO, [GO], _Repeated(GO), _Repeated(_Word("go", 0.5, 0.75)), _Derived(GO),
     json.dumps(GO), json.dumps(GO).encode(), f"data: {json.dumps(GO)}\n\n",
     b"data: " + json.dumps(GO).encode(),
+    f"id: 7\nevent: word\ndata: {json.dumps(GO)}\n\n".encode(), f"retry: 9\ndata: {json.dumps(GO)}\n\n".encode(),
     f"event: word\nid: 7\ndata: {json.dumps(GO)}\n\n: waits\ndata: [DONE]\n\n", f"{{}}\n{json.dumps(GO)}\n",
     _Word("go", 0.5, 0.75), [_Word("go", 0.5, 0.75)], namedtuple("Word", GO)(**GO), _Event(),
     *(_Dumps(name, GO) for name in ("model_dump", "to_dict", "dict")),
@@ -123,6 +124,13 @@ class _Derived:
 def test_what_users_hold(message: Any) -> None:
     """The same word from each; catches a timedelta that is divided by a unit, and events that are no documents."""
     assert told(message) == [("go", 0.5, 0.75)]
+
+
+def test_an_object_of_gradiums_client_is_read() -> None:
+    """It has the fields of another service, without values, and no type."""
+    fields = {"text": "go", "start_s": 0.5, "stop_s": 0.75, "client_req_id": None, "stream_id": None}
+    assert told(namedtuple("TextWithTimestamps", fields)(**fields)) == [("go", 0.5, 0.75)]
+    assert told({**fields, "stop_s": None}) == [("go", 0.5, None)]
 
 
 def test_a_time_of_zero_may_be_missing() -> None:
@@ -164,6 +172,21 @@ def test_silence_is_said_once(message: Any, words: str, caplog: pytest.LogCaptur
         for _ in range(200):
             reader.read(message)
     assert len(caplog.records) == 1 and re.search(words, caplog.records[0].getMessage()), caplog.text
+
+
+def test_messages_of_another_service_are_told_of_once(caplog: pytest.LogCaptureFixture) -> None:
+    """A program that falls back to another service with the same voice would see the mouth stay shut; events of the
+    program's own, which seem to be words, are not told of."""
+    first = {"alignment": {"chars": ["a"], "charStartTimesMs": [0], "charDurationsMs": [90]}}
+    other = {"type": "timestamps", "context_id": "c", "word_timestamps": {"words": ["go"], "start": [0], "end": [0.5]}}
+    for form, count in ((None, 1), ("elevenlabs", 0)):
+        reader = Messages(form)
+        with caplog.at_level(logging.INFO, "labial"):
+            for message in (first, GO, other, other):
+                reader.read(message)
+        assert len(caplog.records) == count, caplog.text
+        assert not count or re.search("message 3 .* Cartesia .* ElevenLabs: name the format", caplog.text)
+        caplog.clear()
 
 
 @needs_runtime

@@ -9,8 +9,10 @@ export class Messages {
     #tools;
     #labial;
     #format; // null to recognise it by the first message with timings
+    #recognises;
     #silent = null; // a service whose messages had no timings
     #hasWarned = false;
+    #hasToldOfOthers = false;
     #labels; // the set of labels where the format does not tell it
     #phonemes = new Map(); // of labels: the nearest one takes long to find
     #stats = { messages: 0, told: 0, skipped: 0 };
@@ -23,7 +25,8 @@ export class Messages {
         }
         this.#tools = tools;
         this.#labial = labial;
-        this.#format = format === "auto" ? null : format;
+        this.#recognises = format === "auto";
+        this.#format = this.#recognises ? null : format;
         this.#labels = labels;
     }
 
@@ -66,7 +69,7 @@ export class Messages {
         if (isBinary(message)) {
             const bytes = bytesOf(message);
             const first = bytes.subarray(0, 64).find((byte) => ![9, 10, 13, 32].includes(byte));
-            if (![0x7b, 0x5b, 0x64, 0x65, 0x3a].includes(first)) return [];
+            if (![0x7b, 0x5b, 0x64, 0x65, 0x69, 0x72, 0x3a].includes(first)) return [];
             try {
                 found = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
             } catch {
@@ -98,8 +101,12 @@ export class Messages {
         }
         const told = read.map((one) => this.#converted(one, odd))
             .filter(({ items, key }) => items.length || key !== undefined);
-        if (told.length) this.#format = format;
-        else this.#silent = format;
+        if (told.length) {
+            this.#format = format;
+        } else {
+            this.#silent = format;
+            this.#expectOthers(item, format);
+        }
         return {
             told, chained: service.times === "chained", joins: service.times === "restart",
             gap: read.some(({ kind }) => kind === "phonemes") ? LONGEST_GAP : 0, utterance: service.utterance(item),
@@ -133,6 +140,17 @@ export class Messages {
             this.#phonemes.set(key, this.#labial.label(found));
         }
         return this.#phonemes.get(key);
+    }
+
+    /** Warns, once, if a message is of another service than those that told timings before. */
+    #expectOthers(item, format) {
+        if (!this.#recognises || this.#format === null || this.#hasToldOfOthers) return;
+        const { SERVICES, serviceOf } = this.#tools.timings;
+        const other = SERVICES[serviceOf(item)];
+        if (!other || other === SERVICES[format] || other.bare) return;
+        this.#hasToldOfOthers = true;
+        console.warn(`labial: message ${this.#stats.messages} seems to be of ${other.title} and is not read, since earlier `
+            + `ones are of ${SERVICES[format].title}: name the format, or use a voice for each service`);
     }
 
     #complain() {

@@ -56,7 +56,8 @@ class Messages:
         self._form, self._labels = form, labels
         self._silent: Optional[str] = None  # a service whose messages had no timings
         self._phonemes: Dict[Tuple[str, str], str] = {}
-        self._has_warned = False
+        self._recognises = form is None
+        self._has_warned = self._has_told_of_others = False
         self.stats = Stats()
 
     @property
@@ -94,7 +95,7 @@ class Messages:
         lines: List[Tuple[Optional[int], int, Any]]
         if isinstance(message, (bytes, bytearray, memoryview)):
             message = bytes(message)
-            if message[:64].lstrip()[:1] not in (b"{", b"[", b"d", b"e", b":"):
+            if message[:64].lstrip()[:1] not in (b"{", b"[", b"d", b"e", b"i", b"r", b":"):
                 return []
             try:
                 message = message.decode("utf-8")
@@ -134,6 +135,8 @@ class Messages:
             self._form = form
         else:
             self._silent = form
+            if self._recognises and self._form is not None:
+                self._expect_others(item, form)
         return Heard(tuple(found), service.times == "chained", service.times == "restart",
                      LONGEST_GAP if any(one.kind == "phonemes" for one in told) else 0.0, service.utterance(item))
 
@@ -161,6 +164,16 @@ class Messages:
             if len(self._phonemes) < MESSAGE_ITEMS:
                 self._phonemes[label[:MESSAGE_TEXT], labels] = known
         return known
+
+    def _expect_others(self, item: Entry, form: str) -> None:
+        """Warns, once, of a message of another service than `form`, of which earlier ones told timings."""
+        other = service_of(item)
+        if other in (None, form) or SERVICES[other].is_bare or self._has_told_of_others:
+            return
+        self._has_told_of_others = True
+        _logger.warning("message %d seems to be of %s and is not read, since earlier ones are of %s: name the format, "
+                        "or use a voice for each service", self.stats.messages, SERVICES[other].title,
+                        SERVICES[form].title)
 
     def _complain(self) -> None:
         service = SERVICES.get(self._form or self._silent or "")

@@ -307,7 +307,7 @@ class _Tell:
     def _time(self, field: _Field, one: Entry, root: Entry, odd: Odd) -> Optional[float]:
         """A field of an object in seconds; None where it may be missing and is, NaN where it makes no sense."""
         value, number = field.found(one)
-        if value is _MISSING and field.optional:
+        if field.optional and (value is _MISSING or value is None):
             return None
         divisor = field.divisor(number, one, root)
         if value is _MISSING or divisor == 0.0:
