@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import tracemalloc
 from itertools import groupby
 from pathlib import Path
@@ -13,9 +14,10 @@ import pytest
 
 from labial.__main__ import main
 from labial.corpus import Episode, Segment, resample
+from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.files.faps import CHANNELS
-from labial.files.frames import at_rate, count_at, sampled, spans, spans_told
+from labial.files.faps import TOUCHING
+from labial.files.frames import at_rate, opening, sampled, spans, spans_told
 from labial.reference import stream
 from labial.reference.fade import delivered
 from labial.reference.synthesis import synthesise
@@ -141,19 +143,23 @@ def test_memory_does_not_grow_with_the_stream() -> None:
     assert peak(24) - peak(2) < 0.5 * more * tables.solved.size * 8  # a float64 of each channel in each frame
 
 
-@pytest.mark.parametrize("wanted", [7, 25, 49, 60, 120])
-def test_rates_are_the_same_in_parts(wanted: int) -> None:
-    """To the last bit, whatever the parts. Would catch a frame at a cut that lacks a neighbour."""
-    rng = np.random.default_rng(wanted)
-    for total in (1, 2, 3, 50, 501):
-        frames = rng.normal(0, 100, (total, CHANNELS))
-        count = count_at(total, 50, wanted)
-        assert abs(count / wanted - total / 50) <= 0.5001 / wanted or count == 1
-        whole = sampled((np.arange(total) + 0.5) / 50, frames, wanted, count)
-        for cuts in ([], np.arange(1, total), np.sort(rng.integers(0, total, 4))):
-            parts = np.split(frames, cuts)
-            assert np.array_equal(np.concatenate(list(at_rate(parts, total, 50, wanted))), whole)
-    assert not list(at_rate([], 0, 50, wanted)) and not count_at(0, 50, wanted)
+@pytest.mark.parametrize("wanted", [24, 25, 30, 49, 50, 60, 120])
+def test_other_rates_keep_closures_and_the_end(wanted: int) -> None:
+    """Lips that touch in any frame touch within that time at every rate, and the face is at rest at the end."""
+    motion = delivered(synthesise(load("speech_en"), [
+        (SPEECH.phonemes.index(label), length) for label, length in
+        [("SIL", 200), ("AA", 150), ("M", 70), ("AA", 180), ("P", 60), ("IY", 90), ("B", 50), ("AW", 230)]]))
+    frames = at_rate(motion, 50, wanted)
+    assert 0 <= len(frames) / wanted - len(motion) / 50 < 1 / wanted + 1e-9 and np.array_equal(frames[-1], motion[-1])
+    assert np.abs(frames[-1]).max() < 0.5
+    touching = spans(opening(motion[10:-12]) <= TOUCHING)
+    assert len(touching) == 3
+    for first, end in touching:
+        when = slice(math.floor((first + 10) * wanted / 50), math.ceil((end + 10) * wanted / 50))
+        assert opening(frames[when]).min() <= TOUCHING, (first, wanted)
+    mean = sampled((np.arange(len(motion)) + 0.5) / 50, motion, wanted, len(frames))
+    assert np.abs(frames[: round(0.25 * wanted)] - mean[: round(0.25 * wanted)]).max() < (1e-9 if wanted > 50 else 80)
+    assert not len(at_rate(motion[:0], 50, wanted)) and len(at_rate(motion[:1], 50, wanted)) == math.ceil(wanted / 50)
 
 
 @pytest.mark.slow

@@ -14,7 +14,8 @@ pytest.importorskip("soxr")
 
 from labial.corpus.episode import Segment  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
-from labial.files.faps import CHANNELS  # noqa: E402
+from labial.files.faps import CHANNELS, TOUCHING  # noqa: E402
+from labial.files.frames import opening  # noqa: E402
 from labial.hearing import clips, prepared, targets  # noqa: E402
 from labial.hearing.features import log_energies  # noqa: E402
 from labial.hearing.plans import CLASSES  # noqa: E402
@@ -142,7 +143,7 @@ def test_targets_are_those_of_the_stream() -> None:
     assert frames.shape == (30, CHANNELS)
     assert np.array_equal(frames[:20], np.array(render([*timings, ("SIL", 400)]))[:20])
     assert [CLASSES[k] for k in targets.classes(timings, 26)] == ["SIL"] * 5 + ["M"] * 4 + ["AA"] * 16 + ["SIL"]
-    assert targets.opening(targets.closure().pose) <= targets.TOUCHING < targets.opening(frames[15])
+    assert opening(targets.closure().pose) <= TOUCHING < opening(frames[15])
     assert targets.frames([], 4).shape == (4, CHANNELS)
 
 

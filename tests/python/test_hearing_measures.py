@@ -16,6 +16,7 @@ from hearing_models import random_hearing  # noqa: E402
 from labial.__main__ import main  # noqa: E402
 from labial.evaluate import hearing, loudness  # noqa: E402
 from labial.files.faps import CHANNELS, FAP_NUMBERS  # noqa: E402
+from labial.files.frames import opening  # noqa: E402
 from labial.hearing import choose, distort, measures  # noqa: E402
 from labial.hearing.features import FRAME, RATE  # noqa: E402
 from labial.hearing.measures import Figures, delay, measured, pooled  # noqa: E402
@@ -159,7 +160,7 @@ def test_loudness_opens_the_mouth() -> None:
     hum, hiss = tone(1.0) * 0 + 0.3, np.random.default_rng(0).normal(scale=0.3, size=RATE)
     hum = (hum * np.sin(2 * np.pi * 150 * np.arange(RATE) / RATE)).astype(np.float32)
     sound = distort.as_integers(np.concatenate([np.zeros(RATE), hum, hiss]), -3.0)
-    gap, less = (hearing.targets.opening(method(sound))
+    gap, less = (opening(method(sound))
                  for method in (loudness.loudness, loudness.loudness_and_crossings))
     assert len(gap) == len(sound) // FRAME and gap[:45].max() <= 72 < gap[60:].min()
     assert np.allclose(gap[55:95], less[55:95]) and less[110:].max() < 0.6 * gap[110:].min()

@@ -20,9 +20,10 @@ from hearing_models import random_hearing  # noqa: E402
 from labial.__main__ import main  # noqa: E402
 from labial.errors import LabialError  # noqa: E402
 from labial.evaluate import others  # noqa: E402
+from labial.files.faps import TOUCHING  # noqa: E402
+from labial.files.frames import opening  # noqa: E402
 from labial.hearing.features import RATE  # noqa: E402
 from labial.hearing.model import save  # noqa: E402
-from labial.hearing.targets import TOUCHING, opening  # noqa: E402
 from labial.runtime.render import render  # noqa: E402
 from runtime import needs_runtime  # noqa: E402
 

@@ -20,6 +20,7 @@ from labial.__main__ import main  # noqa: E402
 from labial.corpus.episode import Segment  # noqa: E402
 from labial.corpus.languages import speakable  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
+from labial.files.frames import opening  # noqa: E402
 from labial.hearing import targets  # noqa: E402
 from labial.hearing.espeak import closure, phonemes  # noqa: E402
 from labial.hearing.speech_corpus import Written, read_sentences, write_corpus  # noqa: E402
@@ -71,7 +72,7 @@ def test_times_are_those_of_the_programs(program: str, voice: str, tmp_path: Pat
     if program == "flite":  # espeak-ng's noise depends on what it said before
         assert np.array_equal(spoken.samples, samples[: len(spoken.samples)].astype(np.int16))
     true = true[:-REST]
-    found = targets.opening(targets.frames(targets.durations(spoken.segments), len(true)))
+    found = opening(targets.frames(targets.durations(spoken.segments), len(true)))
     assert np.abs(found - true)[:-12].max() <= 30 and np.corrcoef(found, true)[0, 1] > 0.995
 
 

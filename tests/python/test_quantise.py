@@ -11,7 +11,7 @@ import pytest
 from labial.corpus.phonesets import LABEL_SETS
 from labial.errors import ModelError
 from labial.evaluate.loss import loosened, measure
-from labial.files.faps import CHANNELS
+from labial.files.faps import CHANNELS, TOUCHING
 from labial.reference import contact
 from labial.reference.stream import DURATION_MAX
 from labial.reference.trajectory import WINDOW
@@ -61,7 +61,7 @@ def test_limits_are_the_librarys() -> None:
         "NAMES_FORMAT": emit.NAMES_FORMAT, "RIG_FORMAT": table.FORMAT,
         "RIG_WEIGHT_SUM_MAX": table.WEIGHT_SUM_MAX, "RIG_GAIN_MAX": table.GAIN_MAX,
         "RIG_VALUE_MAX": table.VALUE_MAX, "RIG_SLOPE_MAX": table.SLOPE_MAX, "RIG_SEGMENTS": table.SEGMENTS,
-        "RIG_TOUCHING": table.TOUCHING, "RIG_APART": table.APART, "RIG_OPENING": SOURCES["opening"].reach,
+        "RIG_TOUCHING": TOUCHING, "RIG_APART": table.APART, "RIG_OPENING": SOURCES["opening"].reach,
         **{f"LABELS_{name.upper()}": bit for name, bit in LABEL_SETS.items()},
     }  # fmt: skip
     assert {name: defined.get(name) for name in known} == known and table.SEGMENTS == CURVE_POINTS[1] - 1

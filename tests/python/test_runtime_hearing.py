@@ -24,7 +24,7 @@ from labial.errors import LabialError, StreamError
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import HearingTables, quantise
-from labial.hearing.targets import opening
+from labial.files.frames import opening
 from labial.runtime.hearing import models
 from labial.tables.visemes import VISEME_OF, VISEMES
 from packages import SOURCE

@@ -55,7 +55,8 @@ def run_synth(options: argparse.Namespace) -> int:
     """Writes the frames."""
     import numpy as np
 
-    from labial.files.frames import at_rate, count_at
+    from labial.files.faps import CHANNELS
+    from labial.files.frames import at_rate
     from labial.files.outputs import check, writing
     from labial.reference.synthesis import delivered
     from labial.rig.animation import with_shares
@@ -67,15 +68,13 @@ def run_synth(options: argparse.Namespace) -> int:
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source)
     fps, name = options.fps or model.fps, Path(options.model).stem
-    frames = list(delivered(model, phonemes, whole=options.whole, articulation=options.articulation,
-                            exact=options.exact))  # all of them: some formats tell their number first
-    count = sum(map(len, frames))
+    motion = np.concatenate([np.zeros((0, CHANNELS)), *delivered(
+        model, phonemes, whole=options.whole, articulation=options.articulation, exact=options.exact)])
     spoken = [(model.phonemes[phoneme], milliseconds) for phoneme, milliseconds in phonemes]
-    frames = [with_shares(np.concatenate(frames), spoken, model.fps)] if count else []
-    parts = at_rate(frames, count, model.fps, fps)
+    frames = at_rate(with_shares(motion, spoken, model.fps), model.fps, fps)
     opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
     with opened as out:
-        form.write(out, parts, fps, name, count_at(count, model.fps, fps))
+        form.write(out, [frames], fps, name, len(frames))
     return 0
 
 

@@ -25,7 +25,7 @@ from labial.errors import DataError, needs
 from labial.evaluate.loudness import loudness_of
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.faps import FAP_NUMBERS
-from labial.files.frames import sampled
+from labial.files.frames import opening, sampled
 from labial.hearing import integer, network, targets
 from labial.hearing.features import BANDS, FLOOR, FRAME, HOPS, log_energies
 from labial.hearing.measures import RATE
@@ -198,7 +198,7 @@ def methods(model: HearingModel) -> Dict[str, Method]:
 def channels(frames: np.ndarray) -> np.ndarray:
     """(T, 5) opening, jaw, upper lip, lower lip and corners of frames (T, 13), FAP units."""
     frames = np.asarray(frames, dtype=np.float64)
-    return np.stack([targets.opening(frames), frames[:, _JAW], frames[:, _UPPER], frames[:, _LOWER],
+    return np.stack([opening(frames), frames[:, _JAW], frames[:, _UPPER], frames[:, _LOWER],
                      frames[:, _LEFT] + frames[:, _RIGHT]], axis=1)
 
 

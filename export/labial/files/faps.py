@@ -30,3 +30,7 @@ CHANNELS = len(FAP_NUMBERS)
 
 #: Channels of the left and of the right side of the mouth that belong together.
 SIDES = tuple((FAP_NUMBERS.index(left), FAP_NUMBERS.index(left + 1)) for left in (53, 55, 57, 59))
+
+#: Opening up to which lips touch, -(FAP 51 + FAP 52): the outer lips are slightly apart when the inner ones meet
+#: (LABIAL_RIG_TOUCHING of include/labial/rig.h).
+TOUCHING = 72

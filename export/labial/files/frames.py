@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import Iterable, Iterator, List, Optional, TextIO, Tuple
+from typing import List, TextIO, Tuple
 
 import numpy as np
 
-from labial.files.faps import FAP_COLUMNS
+from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS, TOUCHING
 
 #: Most frames of a grid for uneven times: this many, or ten times those of the file.
 _MOST_FRAMES = 100000
@@ -15,7 +15,8 @@ _MOST_FRAMES = 100000
 _OVERSAMPLING = 16
 #: Tolerance of a frame's time on an even grid, seconds: times in files are rounded to milliseconds.
 _ROUNDING = 0.0015
-
+#: Columns of a frame: how far the upper lip is lowered, and the lower one raised.
+_UPPER, _LOWER = FAP_NUMBERS.index(51), FAP_NUMBERS.index(52)
 
 #: The first line of a frames file.
 CSV_HEAD = ",".join(("time", *FAP_COLUMNS)) + "\n"
@@ -33,6 +34,12 @@ def write_csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: float, star
         out.write(f"{start + t / fps:.3f}," + ",".join(f"{value:.2f}" for value in frame) + "\n")
 
 
+def opening(frames: np.ndarray) -> np.ndarray:
+    """(..., T) the distance of the outer lips' middles in frames (..., T, 13 or more), FAP units."""
+    result: np.ndarray = -(frames[..., _UPPER] + frames[..., _LOWER])
+    return result
+
+
 def sampled(times: np.ndarray, frames: np.ndarray, fps: float, count: int, origin: float = 0.0) -> np.ndarray:
     """(count, K) frames at `fps` per second, the first of which begins at `origin`, seconds, of frames (T, K) whose
     `times` are (T,).
@@ -41,46 +48,29 @@ def sampled(times: np.ndarray, frames: np.ndarray, fps: float, count: int, origi
     rate is averaged over each frame's duration instead, which avoids aliasing.
     """
     steps = np.diff(times)
-    return _sampled(times, frames, fps, range(count), len(steps) > 0 and np.median(steps) < 0.99 / fps, origin)
-
-
-def _sampled(
-    times: np.ndarray, frames: np.ndarray, fps: float, numbers: range, dense: bool, origin: float = 0.0
-) -> np.ndarray:
-    """The frames of these numbers of :func:`sampled`, averaged where the motion is `dense`."""
-    points = _OVERSAMPLING if dense else 1
-    moments = origin + (np.arange(numbers.start * points, numbers.stop * points) + 0.5) / (fps * points)
+    points = _OVERSAMPLING if len(steps) > 0 and np.median(steps) < 0.99 / fps else 1
+    moments = origin + (np.arange(count * points) + 0.5) / (fps * points)
     samples = [np.interp(moments, times, channel) for channel in frames.T]
-    result: np.ndarray = np.stack(samples, axis=1).reshape(len(numbers), points, -1).mean(axis=1)
+    result: np.ndarray = np.stack(samples, axis=1).reshape(count, points, -1).mean(axis=1)
     return result
 
 
-def at_rate(parts: Iterable[np.ndarray], total: int, fps: float, wanted: float) -> Iterator[np.ndarray]:
-    """(n, K) frames at `wanted` per second of `total` frames at `fps` that come in parts (n, K), resampled by
-    :func:`sampled`: :func:`count_at` in all, which begin at the same time."""
-    if fps == wanted:
-        yield from parts
-        return
-    count, done, begin = count_at(total, fps, wanted), 0, 0
-    held: Optional[np.ndarray] = None
-    for part in parts:
-        held = part if held is None else np.concatenate([held, part])
-        known = begin + len(held)
-        # A frame must end before the middle of the last known one, unless no more will come.
-        until = count if known == total else max(math.floor((known - 1) * wanted / fps), done)
-        if until == done:
-            continue
-        times = (np.arange(begin, known) + 0.5) / fps
-        yield _sampled(times, held, wanted, range(done, until), total > 1 and 1.0 / fps < 0.99 / wanted)
-        done = until
-        unused = min(max(math.floor(done * fps / wanted) - 2, begin) - begin, len(held) - 1)
-        held, begin = held[unused:].copy(), begin + unused
-
-
-def count_at(total: int, fps: float, wanted: float) -> int:
-    """The number of frames at `wanted` per second for `total` frames at `fps`: the nearest duration, at least one frame
-    for any."""
-    return total if fps == wanted or not total else max(math.floor(total * wanted / fps + 0.5), 1)
+def at_rate(frames: np.ndarray, fps: float, wanted: float) -> np.ndarray:
+    """(N, K) frames at `wanted` per second of motion (T, K) at `fps` that was made, for at least as long. They are
+    :func:`sampled`, but for what averages would hide: the last one is the motion's last, and one within which the lips
+    touch has the pose in which they are nearest."""
+    if fps == wanted or not len(frames):
+        return frames
+    count = math.ceil(len(frames) * wanted / fps - 1e-9)
+    result = sampled((np.arange(len(frames)) + 0.5) / fps, frames, wanted, count)
+    apart = opening(frames)
+    for number in range(count if wanted < fps else 0):
+        first, end = math.floor(number * fps / wanted + 1e-9), math.ceil((number + 1) * fps / wanted - 1e-9)
+        nearest = first + int(np.argmin(apart[first:end]))
+        if apart[nearest] <= TOUCHING:
+            result[number] = frames[nearest]
+    result[-1] = frames[-1]
+    return result
 
 
 def even(times: np.ndarray, frames: np.ndarray) -> Tuple[float, np.ndarray]:

@@ -14,9 +14,9 @@ from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
-from labial.files.frames import spans
+from labial.files.faps import TOUCHING
+from labial.files.frames import opening, spans
 from labial.hearing.plans import CLASSES, CLOSED
-from labial.hearing.targets import TOUCHING, opening
 
 #: Frames that a closure may be early or late: 40 ms.
 REACH = 2

@@ -8,25 +8,16 @@ import numpy as np
 
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH
-from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.files.faps import CHANNELS, TOUCHING
+from labial.files.frames import opening
 from labial.hearing.features import FRAME, RATE
 from labial.hearing.plans import CLASSES, CLOSED, class_of
 from labial.runtime.render import render
 
 #: Milliseconds of a frame.
 FRAME_MS = 1000 * FRAME // RATE
-#: Columns of a frame: how far the upper lip is lowered, and the lower one raised.
-_UPPER, _LOWER = FAP_NUMBERS.index(51), FAP_NUMBERS.index(52)
-#: Up to this opening, in FAP units, a rig shows closed lips (LABIAL_RIG's touching lips, DESIGN.md).
-TOUCHING = 72.0
 
 _CLASS = {phoneme: CLASSES.index(class_of(phoneme)) for phoneme in SPEECH.phonemes}
-
-
-def opening(frames: np.ndarray) -> np.ndarray:
-    """(..., T) the distance of the outer lips' middles in frames (..., T, 13), FAP units."""
-    result: np.ndarray = -(frames[..., _UPPER] + frames[..., _LOWER])
-    return result
 
 
 def durations(segments: Sequence[Segment], speed: float = 1.0) -> List[Tuple[str, int]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Callable, List, Optional, Tuple, Union
 
 from labial.errors import DataError
 from labial.files.c import check_name, written_by
-from labial.files.faps import FAP_NAMES
+from labial.files.faps import FAP_NAMES, TOUCHING
 from labial.files.outputs import folder
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import Row
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 #: Version and limits of include/labial/rig.h.
 FORMAT = 3
-TOUCHING, APART = 72, 136
+APART = 136  # the opening at which lips no longer touch at all
 WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
 SLOPE_MAX, SEGMENTS, VISEME_MAX = 1 << 25, 8, 32767
 _SLOPE_ONE = 1 << 20
