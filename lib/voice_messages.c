@@ -130,7 +130,7 @@ static int begins_again(const labial_voice_t *voice, const labial_voice_utteranc
 {
     const uint64_t begin = utterance->base + message->begin, end = utterance->base + message->end;
     uint64_t told, shorter = utterance->told - utterance->base;
-    if (!utterance->joined || begin > utterance->last + MESSAGE_ROUNDING)
+    if (!utterance->joined || begin + MESSAGE_ROUNDING >= utterance->told)
         return 0;
     if (message->end - message->begin < shorter)
         shorter = message->end - message->begin;
@@ -205,7 +205,7 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
     labial_voice_remove(voice, utterance, from, to);
     if (message->kind != utterance->kind) {
         utterance->kind = message->kind;
-        utterance->told = utterance->last = 0;
+        utterance->told = 0;
         utterance->joined = 0;
         utterance->over = utterance->highest = 0;
         voice->stale = 1;
@@ -218,7 +218,6 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
     if (voice->room - voice->used < found.places)
         labial_voice_pack(voice);
     if (found.count > 0u) {
-        utterance->last = base + found.begin;
         utterance->joined = message->times == LABIAL_VOICE_JOINED;
         if (base + found.end > utterance->told)
             utterance->told = base + found.end;

@@ -15,6 +15,8 @@ export const LAST_VISEME = 0.1;
 const LONGEST_ITEM = 3600;
 /** Times that differ by no more, in seconds, are the same. */
 const ROUNDING = 0.001;
+/** Messages of which the times go on may overlap by as much, seconds. */
+const OVERLAP = 0.02;
 
 export const VISEMES = table.visemes;
 export const KINDS = ["sounds", "labels", "phonemes", ...Object.keys(VISEMES), "words", "characters"];
@@ -46,9 +48,9 @@ export function segmentsOf(name, entries, spoken = null) {
 }
 
 /** The items of messages one after the other. Where messages have keys, they are in the order of these, and the latest
- * of each counts. Times begin again with an utterance, and where a service may count from the message before: in a
- * message that begins before that one began, or with it but with other words. They then count from the end of all that
- * came before. */
+ * of each counts. Times begin again with an utterance, and where a service may count from the message before: in one
+ * that begins before that one began, or with other words within it, of which it lasts at least half. They then count
+ * from the end of all that came before. */
 function joined(messages, times) {
     if (messages.some(([, { key }]) => key !== undefined)) {
         const keyed = new Map(messages.map(([, { key, items }], i) => [key ?? i, items]));
@@ -74,8 +76,11 @@ export class Joint {
         if (!items.length) return items;
         const [first] = items;
         const last = this.#last;
+        const length = Math.max(...items.map(({ start, end }) => end || start)) - first.start;
+        const told = this.#end - this.#origin;
         const again = last && (first.start < last.start - ROUNDING
-            || (first.start <= last.start + ROUNDING && first.text !== last.text));
+            || ((first.start !== last.start || first.text !== last.text)
+                && told - first.start > Math.max(OVERLAP, Math.min(length, told - last.start) / 2)));
         const other = last && utterance !== this.#before && this.#origin + first.start < this.#end - ROUNDING;
         if (this.#times === "chained" || other || (this.#times === "restart" && again)) this.#origin = this.#end;
         const origin = this.#origin;

@@ -275,22 +275,22 @@ struct labial_voice_place {
 };
 
 struct labial_voice_utterance {
-    int64_t origin;      /* milliseconds of the sound, from which its times count */
-    int64_t limit;       /* where it ends at the latest */
-    uint64_t base;       /* microseconds, from which times of joined messages count; */
-    uint64_t told, last; /* the end of all messages, and the beginning of the last one */
-    uint32_t identity;   /* 0 while there is none */
-    uint32_t first;      /* of its places */
-    uint32_t places;     /* that its items take */
-    uint32_t end;        /* of its items, milliseconds from the origin */
-    uint32_t over;       /* up to which items were forgotten */
-    uint32_t highest;    /* key */
-    uint32_t serial;     /* its number */
-    uint8_t kind;        /* that counts */
-    uint8_t tail;        /* places of the last item */
-    uint8_t queued;      /* it began by itself: behind the one before it */
-    uint8_t early;       /* so, behind labial_voice_finish(), and no message had an identity */
-    uint8_t joined;      /* its last message was */
+    int64_t origin;    /* milliseconds of the sound, from which its times count */
+    int64_t limit;     /* where it ends at the latest */
+    uint64_t base;     /* microseconds, from which times of joined messages count; */
+    uint64_t told;     /* the end of all messages */
+    uint32_t identity; /* 0 while there is none */
+    uint32_t first;    /* of its places */
+    uint32_t places;   /* that its items take */
+    uint32_t end;      /* of its items, milliseconds from the origin */
+    uint32_t over;     /* up to which items were forgotten */
+    uint32_t highest;  /* key */
+    uint32_t serial;   /* its number */
+    uint8_t kind;      /* that counts */
+    uint8_t tail;      /* places of the last item */
+    uint8_t queued;    /* it began by itself: behind the one before it */
+    uint8_t early;     /* so, behind labial_voice_finish(), and no message had an identity */
+    uint8_t joined;    /* its last message was */
 };
 
 /* A piece of what is known: a phoneme from `start` to `end`. */

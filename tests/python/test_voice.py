@@ -296,7 +296,7 @@ def test_pipers_chunks_are_read_as_they_are() -> None:
     (None, b'{"a": "\xff"}', "not UTF-8"),
     (None, '{"a": ' + "[" * 100_000, "nested too deeply"),
     (None, [7], "7 is not an object"),
-    (None, [{}] * 1001, "1001 objects, more than the 1000 that are read"),
+    (None, [{}] * 10_001, "10001 objects, more than the 10000 that are read"),
     ("elevenlabs", {"alignment": {"chars": ["a"] * 10001, "charStartTimesMs": [0] * 10001,
                                   "charDurationsMs": [0] * 10001}}, "more than 10000 words or phonemes"),
 ])  # fmt: skip

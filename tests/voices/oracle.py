@@ -104,7 +104,7 @@ class Oracle:
         self.finished = self.cancelled = False
 
     def told_before(self, at: int) -> bool:
-        """Whether the last utterance was told before its sound began: behind an end and not over, or not to be heard."""
+        """Whether the last utterance was told before its sound: behind an end and not over, or not to be heard."""
         if not self.utterances or not self.utterances[-1]["queued"] or not self.spoken(self.utterances[-1]):
             return False
         is_early = self.utterances[-1]["early"] and self.ends()[-1] > self.next * 20

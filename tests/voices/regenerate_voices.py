@@ -13,7 +13,7 @@ from __future__ import annotations
 import itertools
 import json
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from oracle import Oracle, Shown, summary
 
@@ -36,6 +36,13 @@ def _sample(name: str) -> List[List[Any]]:
 
 def _sounds(first: int = 0, end: int = len(SOUNDS)) -> List[List[Any]]:
     return [["push", *sound] for sound in SOUNDS[first:end]]
+
+
+def _stamps(*words: Tuple[str, float, float]) -> List[List[Any]]:
+    """A message of Rime."""
+    texts, starts, ends = zip(*words)
+    stamps = {"words": list(texts), "start": list(starts), "end": list(ends)}
+    return [["feed", {"type": "timestamps", "contextId": "r", "word_timestamps": stamps}]]
 
 
 def _words(first: int = 0, end: int = len(WORDS)) -> List[List[Any]]:
@@ -103,6 +110,9 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
                                                 *_sounds(4), _plays(0, 4)]},
     "an utterance cuts the one before": {"steps": [*_sounds(), _plays(0, 0.5), ["begin", 0.84], *_sounds(),
                                                    _plays(0.52, 2.6)]},
+    "sentences whose times begin again, a little later": {"words": True, "steps": [
+        *_stamps(("Maybe", 0.08, 0.5), ("people", 0.52, 0.9)), *_stamps(("hum", 0.12, 0.4), ("by", 0.45, 0.8)),
+        _plays(0, 0.4), *_stamps(("the", 0.16, 0.3), ("pool", 0.35, 0.9)), _plays(0.42, 3.2)]},
     "told before it begins": {"steps": [*_sounds(), ["begin", 0.0], ["finish"], _plays(0, 1.5), *_sounds(0, 4),
                                         _plays(1.52, 1.7), ["begin", 2.0], *_sounds(4), _plays(1.72, 4)]},
     "finished, and more": {"steps": [*_sounds(), ["finish"], _plays(0, 1.5), *_sounds(0, 4), _plays(1.52, 2.6)]},

@@ -31,6 +31,8 @@ LONGEST_GAP = 0.15
 LAST_VISEME = 0.1
 #: Times that differ by no more, in seconds, are the same.
 _ROUNDING = 1e-3
+#: Messages of which the times go on may overlap by as much, seconds.
+_OVERLAP = 0.02
 _STRESS = ("ˈ", "ˌ")
 
 
@@ -57,8 +59,9 @@ def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Tim
     """The items of messages one after the other. Where messages have keys, they are in the order of these, and the
     latest of each counts.
 
-    Times begin again with an utterance, and where a service may count from the message before: in a message that begins
-    before that one began, or with it but with other words. They then count from the end of all that came before.
+    Times begin again with an utterance, and where a service may count from the message before: in one that begins
+    before that one began, or with other words within it, of which it lasts at least half. They then count from the end
+    of all that came before.
     """
     if any(told.key is not None for _, told in messages):
         keyed = {number if told.key is None else told.key: told.items for number, (_, told) in enumerate(messages)}
@@ -71,8 +74,10 @@ def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Tim
         if not told.items:
             continue
         first = told.items[0]
+        length = max(item.end or item.start for item in told.items) - first.start
         again = last is not None and (first.start < last.start - _ROUNDING or (
-            first.start <= last.start + _ROUNDING and first.text != last.text))
+            (first.start, first.text) != (last.start, last.text)
+            and end - origin - first.start > max(_OVERLAP, min(length, end - origin - last.start) / 2)))
         other = last is not None and utterance != before and origin + first.start < end - _ROUNDING
         if times == "chained" or other or (times == "restart" and again):
             origin = end
