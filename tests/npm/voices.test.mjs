@@ -74,6 +74,15 @@ test("messages of another service than the first ones are told of once", async (
     }
 });
 
+test("times that seem to be milliseconds are doubted, once", async (context) => {
+    const warn = context.mock.method(console, "warn", () => {});
+    const voice = await labial.voice();
+    voice.say("Hello,", 0, 10);
+    assert.equal(warn.mock.callCount(), 0);
+    for (const start of [100, 500]) voice.say("world!", start, start + 400);
+    assert.deepEqual(warn.mock.calls.map(({ arguments: [text] }) => text), ['labial: "world!" lasts 400 s; are these seconds?']);
+});
+
 test("the end is told once when all was shown, and not of what was cancelled", async () => {
     for (const cancelled of [false, true]) {
         const voice = await told({});

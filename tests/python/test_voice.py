@@ -173,6 +173,14 @@ def test_cancel_is_a_streams() -> None:
     assert max(abs(a - b) for one, two in zip(eased, expected) for a, b in zip(one, two)) <= 1
 
 
+def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
+    with labial.Voice() as voice:
+        voice.say("Hello,", 0, 10)
+        with pytest.warns(UserWarning, match=r"'world!' lasts 400 s; are these seconds\?") as found:
+            voice.say("world!", 100, 500)
+        assert found[0].filename == __file__
+
+
 @pytest.mark.parametrize("begins", [False, True])
 def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
     """An interrupted sound stops, and its clock with it; what is told for the next answer waits for its sound."""

@@ -14,6 +14,8 @@ const PATIENCE = 0.01;
 /** The clock is believed up to this many seconds, a year; items up to a day, and those that last an hour at most. */
 const LATEST = 3.2e7;
 const [DAY, HOUR] = [86400, 3600];
+/** Seconds beyond which the time of a word or phoneme is doubted. */
+const LONG = 10;
 /** The longest cancel, milliseconds. */
 const CANCEL_MAX = 1e6;
 /** LABIAL_ERROR_FULL. */
@@ -80,6 +82,7 @@ export class Voice extends EventTarget {
     #frame; // what at() returns
     #closed = false;
     #told = false; // that it has ended
+    #doubts = false; // that times are in seconds; it said so
 
     constructor(lexicon, options = {}) {
         super();
@@ -298,6 +301,10 @@ export class Voice extends EventTarget {
         }
         if (Math.max(begin, stop ?? 0) > DAY) {
             throw new RangeError(`${what} at ${begin} s is more than a day after the beginning; are these seconds?`);
+        }
+        if (stop - begin > LONG && !this.#doubts) {
+            this.#doubts = true;
+            console.warn(`labial: ${what} lasts ${stop - begin} s; are these seconds?`);
         }
         return { text, start: begin, end: stop };
     }

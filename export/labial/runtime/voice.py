@@ -9,6 +9,7 @@ import asyncio
 import ctypes
 import math
 import time
+import warnings
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
@@ -31,6 +32,8 @@ _PATIENCE = 0.01
 #: The clock is believed up to this many seconds, a year; items up to a day after their utterance's beginning, and those
 #: that last an hour at most.
 _LATEST, _DAY, _HOUR = 3.2e7, 86_400.0, 3600.0
+#: Seconds beyond which the time of a word or phoneme is doubted.
+_LONG = 10.0
 #: Words of other languages whose pronunciations are kept.
 _SPOKEN = 10_000
 #: Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t).
@@ -357,6 +360,8 @@ def _timed(text: Union[str, int], start: float, end: Optional[float], what: str)
         raise LabialError(f"{what} from {begin:g} to {stop:g} s ends before it begins, or lasts more than an hour")
     if max(begin, stop or 0.0) > _DAY:
         raise LabialError(f"{what} at {begin:g} s is more than a day after the beginning; are these seconds?")
+    if stop is not None and stop - begin > _LONG:
+        warnings.warn(f"{what} lasts {stop - begin:g} s; are these seconds?", stacklevel=4)
     return text, begin, stop
 
 
