@@ -22,16 +22,20 @@ static const char accents[] = "\1\2\3\4\5\0\0\6\1\2\3\5\1\2\3\5\0\4\1\2\3\4\5\0\
 static const struct {
     uint16_t character;
     uint8_t code, more, most;
-} others[] = { { 0xa2u, SIGN_CENT, 0, 0 },    { 0xa3u, SIGN_POUND, 0, 0 },  { 0xa5u, SIGN_YEN, 0, 0 },
-               { 0xb0u, SIGN_DEGREE, 0, 0 },  { 0xb2u, SIGN_SQUARE, 0, 0 }, { 0xb5u, 'u', 0, 0 },
-               { 0xbcu, SIGN_QUARTER, 0, 0 }, { 0xbdu, SIGN_HALF, 0, 0 },   { 0xbeu, SIGN_QUARTERS, 0, 0 },
-               { 0xc6u, 'A', 'E', 0 },        { 0xd7u, SIGN_TIMES, 0, 0 },  { 0xe6u, 'a', 'e', 0 },
-               { 0xf7u, SIGN_DIVIDED, 0, 0 }, { 0x152u, 'O', 'E', 0 },      { 0x153u, 'o', 'e', 0 },
-               { 0x2bcu, '\'', 0, 0 },        { 0x3bcu, 'u', 0, 0 },        { 0x2013u, SIGN_DASH, 0, 0 },
-               { 0x2019u, '\'', 0, 0 },       { 0x20acu, SIGN_EURO, 0, 0 }, { 0x20b9u, SIGN_RUPEE, 0, 0 },
-               { 0x2212u, SIGN_MINUS, 0, 0 }, { 0xfb00u, 'f', 'f', 0 },     { 0xfb01u, 'f', 'i', 0 },
-               { 0xfb02u, 'f', 'l', 0 },      { 0xfb03u, 'f', 'f', 'i' },   { 0xfb04u, 'f', 'f', 'l' },
+} others[] = { { 0xa2u, SIGN_CENT, 0, 0 },    { 0xa3u, SIGN_POUND, 0, 0 },      { 0xa5u, SIGN_YEN, 0, 0 },
+               { 0xb0u, SIGN_DEGREE, 0, 0 },  { 0xb2u, SIGN_SQUARE, 0, 0 },     { 0xb3u, SIGN_CUBE, 0, 0 },
+               { 0xb5u, 'u', 0, 0 },          { 0xc6u, 'A', 'E', 0 },           { 0xd7u, SIGN_TIMES, 0, 0 },
+               { 0xe6u, 'a', 'e', 0 },        { 0xf7u, SIGN_DIVIDED, 0, 0 },    { 0x152u, 'O', 'E', 0 },
+               { 0x153u, 'o', 'e', 0 },       { 0x2bcu, '\'', 0, 0 },           { 0x3bcu, 'u', 0, 0 },
+               { 0x2018u, '\'', 0, 0 },       { 0x2019u, '\'', 0, 0 },          { 0x20acu, SIGN_EURO, 0, 0 },
+               { 0x20b9u, SIGN_RUPEE, 0, 0 }, { 0x2103u, SIGN_DEGREE, 'C', 0 }, { 0x2109u, SIGN_DEGREE, 'F', 0 },
+               { 0x2212u, SIGN_MINUS, 0, 0 }, { 0xfb00u, 'f', 'f', 0 },         { 0xfb01u, 'f', 'i', 0 },
+               { 0xfb02u, 'f', 'l', 0 },      { 0xfb03u, 'f', 'f', 'i' },       { 0xfb04u, 'f', 'f', 'l' },
                { 0xfb05u, 's', 't', 0 },      { 0xfb06u, 's', 't', 0 } };
+
+/* Fractions of U+00BC to U+00BE and of U+2153 to U+215E: 16 times the denominator, plus the numerator. */
+static const uint8_t fractions[] = { 0x41, 0x21, 0x43, 0x31, 0x32, 0x51, 0x52, 0x53,
+                                     0x54, 0x61, 0x65, 0x81, 0x83, 0x85, 0x87 };
 
 /* Ranges of letters of other scripts; what is between them are signs and private characters. */
 static const uint32_t foreign[][2] = { { 0x180u, 0x2ffu },   { 0x370u, 0x1fffu },  { 0x2c00u, 0x2dffu },
@@ -89,7 +93,7 @@ static int is_white_space(uint32_t code)
            code == 0x205fu || code == 0x3000u;
 }
 
-/* Simplifies a character that is no mark; what a ligature has more goes to `pending`. */
+/* Simplifies a character that is no mark; what a ligature or a fraction has more goes to `pending`. */
 static unsigned simplified(uint32_t code, unsigned *pending)
 {
     unsigned i;
@@ -97,8 +101,19 @@ static unsigned simplified(uint32_t code, unsigned *pending)
         return ' ';
     if (code >= 0xff01u && code <= 0xff5eu) /* as wide as ideographs */
         code -= 0xfee0u;
+    if (code == '`')
+        return '\'';
     if (code < 0x80u)
         return code > ' ' && code < 0x7fu ? (unsigned)code : (unsigned)NO_CHARACTER;
+    if (code >= 0x2010u && code <= 0x2013u) /* hyphens and the en dash */
+        return '-';
+    if (code >= 0x2080u && code <= 0x2089u) /* subscripts */
+        return (unsigned)code - 0x2080u + '0';
+    i = (unsigned)code - (code > 0xffu ? 0x2153u - 3u : 0xbcu);
+    if (i < sizeof fractions && (i < 3u) == (code <= 0xffu)) {
+        *pending = 0x20302f30u + (fractions[i] & 15u) + ((unsigned)(fractions[i] >> 4) << 16); /* "0/0 " */
+        return ' ';
+    }
     for (i = 0; i < sizeof others / sizeof others[0]; i++)
         if (others[i].character == code) {
             *pending = others[i].more | (unsigned)others[i].most << 8;

@@ -7,8 +7,9 @@
 #include "labial/labial.h"
 #include "words_parts.h"
 
-const char labial_words_months[] = "january\0february\0march\0april\0may\0june\0july\0august\0september\0october\0"
-                                   "november\0december\0";
+const char labial_words_dates[] = "january\0february\0march\0april\0may\0june\0july\0august\0september\0october\0"
+                                  "november\0december\0monday\0tuesday\0wednesday\0thursday\0friday\0saturday\0"
+                                  "sunday\0number\0numbers\0circa\0";
 
 /* A year of up to four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099. */
 static void say_year(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
@@ -65,7 +66,7 @@ static int read_date(labial_words_reading_t *reading)
     }
     if (month < 1u || month > 12u || day < 1u || day > 31u)
         return 0;
-    labial_words_say(reading, labial_words_listed(labial_words_months, month - 1u), SAID_PLAIN, character);
+    labial_words_say(reading, labial_words_listed(labial_words_dates, month - 1u), SAID_PLAIN, character);
     labial_words_say_small(reading, day, ORDINAL, character);
     say_year(reading, year, CARDINAL, character);
     reading->here = next;
@@ -100,7 +101,7 @@ static groups_t take_groups(labial_words_place_t *here, const char *separators)
 }
 
 /* How many groups belong to the number of a telephone that is here, or 0: +1 555 123 4567; 555-1234, three groups and
- * more with hyphens, the three digits of an area in parentheses; 555.123.4567. */
+ * more with hyphens, the three digits of an area in parentheses; 1-800 before letters; 555.123.4567. */
 static unsigned phone_groups(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
@@ -120,9 +121,11 @@ static unsigned phone_groups(const labial_words_place_t *here)
         next = *here;
     }
     groups = take_groups(&next, "-\0");
-    if (groups.largest <= 4u && groups.smallest >= 2u && next.code != '-' && !labial_words_is_inside(next.code) &&
-        (groups.count > 2u || groups.sizes == 0x34u ||
-         (groups.sizes == 3u && is_area && next.code == ')' && here->before == '(')))
+    if (groups.largest <= 4u && groups.smallest >= 2u && !labial_words_is_inside(next.code) &&
+        (next.code == '-'
+             ? groups.count > 1u && groups.first == 1u && labial_words_is_capital(labial_words_following(&next))
+             : groups.count > 2u || groups.sizes == 0x34u ||
+                   (groups.sizes == 3u && is_area && next.code == ')' && here->before == '(')))
         return groups.count;
     next = *here;
     groups = take_groups(&next, ".\0");
@@ -221,7 +224,7 @@ static int read_share(labial_words_reading_t *reading, int is_counted)
     ending = count.value > 1u ? SAID_PLURAL : SAID_PLAIN;
     if (is_counted)
         labial_words_say(reading, "and", SAID_PLAIN, character);
-    if (is_counted && count.value == 1u && parts.value == 2u)
+    if (is_counted && count.value == 1u && (parts.value == 2u || parts.value == 4u))
         labial_words_say(reading, "a", SAID_PLAIN, character);
     else
         labial_words_say_small(reading, count.value, CARDINAL, character);
@@ -274,6 +277,7 @@ static int read_decade(labial_words_reading_t *reading)
         labial_words_say_small(reading, number.value, PLURALS, character);
     reading->here = next;
     reading->context->after = AFTER_NOTHING;
+    (void)labial_words_read_range(reading);
     return 1;
 }
 

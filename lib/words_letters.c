@@ -14,54 +14,55 @@ static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
 static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
-/* Abbreviations, and words that the trees would misread, by their first letter; each with what is said, or - if it is
- * read letter by letter. */
+/* Abbreviations, and words that the trees would misread, by their first letter; each with what is said, - if it is
+ * read letter by letter, or + if it is what is numbered, so that a letter that stands at its number is no unit. */
 static const char *const meanings[] = {
-    ("approx\0approximately\0ave\0avenue\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
-     "airbnb\0air bee en bee\0abc\0-\0ai\0-\0"),
-    "blvd\0boulevard\0btw\0-\0bouquet\0boo kay\0ballet\0bal lay\0",
-    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0",
+    ("approx\0approximately\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
+     "airbnb\0air bee en bee\0abc\0-\0ai\0-\0apartment\0+\0apt\0+\0"),
+    "blvd\0boulevard\0btw\0-\0bouquet\0boo kay\0ballet\0bal lay\0bus\0+\0",
+    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0chapter\0+\0",
     "dr\0doctor\0dept\0department\0debris\0deh bree\0diy\0-\0",
-    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0eu\0-\0",
-    "fi\0fie\0ftp\0-\0fyi\0-\0faq\0-\0",
-    "govt\0government\0gnu\0new\0gmail\0gee mail\0gpu\0-\0",
-    ("http\0-\0https\0-\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0hahaha\0hah hah hah\0hehe\0hee hee\0"
-     "hdmi\0-\0hbo\0-\0"),
-    "ii\0two\0iii\0three\0idk\0-\0id\0-\0",
+    "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0eu\0-\0exit\0+\0",
+    "fi\0fie\0facade\0fah sod\0ftp\0-\0fyi\0-\0faq\0-\0flat\0+\0fig\0+\0figure\0+\0",
+    "govt\0government\0gnu\0new\0gmail\0gee mail\0gpu\0-\0gate\0+\0gates\0+\0",
+    ("http\0-\0https\0-\0hwy\0highway\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0hahaha\0hah hah hah\0"
+     "hehe\0hee hee\0hdmi\0-\0hbo\0-\0hall\0+\0"),
+    "idk\0-\0id\0-\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "kubernetes\0cooper netties\0karate\0cah rah tee\0",
-    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0latte\0lah tay\0",
+    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0latte\0lah tay\0locker\0+\0",
     "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0mysql\0my sequel\0",
     "nato\0nay toe\0nvidia\0en vidia\0nginx\0engine ex\0nba\0-\0",
     "ok\0-\0omg\0-\0openai\0open ay eye\0",
-    "prof\0professor\0ph\0-\0phd\0-\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0",
+    ("prof\0professor\0ph\0-\0phd\0-\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0"
+     "platform\0+\0part\0+\0"),
     "",
-    "rd\0road\0",
-    "st\0saint\0sr\0senior\0sgt\0sergeant\0",
-    "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0",
-    "ugh\0ug\0uber\0oober\0usb\0-\0url\0-\0usa\0-\0uk\0-\0",
-    "vs\0versus\0vol\0volume\0vii\0seven\0viii\0eight\0",
+    "rd\0road\0row\0+\0room\0+\0",
+    "st\0saint\0sr\0senior\0sgt\0sergeant\0seat\0+\0seats\0+\0suite\0+\0section\0+\0",
+    "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0track\0+\0terminal\0+\0",
+    "ugh\0ug\0uber\0oober\0usb\0-\0url\0-\0usa\0-\0uk\0-\0unit\0+\0",
+    "vs\0versus\0vol\0volume\0",
     "wi\0why\0wifi\0why fie\0www\0-\0whoa\0woe\0",
-    "xii\0twelve\0xiv\0fourteen\0xbox\0ex box\0xyz\0-\0",
+    "xbox\0ex box\0xyz\0-\0",
     "yaml\0yamel\0yuck\0yuk\0youtube\0you tube\0y'all\0yawl\0",
     "",
 };
 
-/* Months and days in short, and what they stand for; the first DATE_MONTHS are months. */
-#define DATE_MONTHS 12
-static const char dates[] =
-    "jan\0january\0feb\0february\0mar\0march\0apr\0april\0jun\0june\0jul\0july\0aug\0august\0sep\0september\0"
-    "sept\0september\0oct\0october\0nov\0november\0dec\0december\0mon\0monday\0tue\0tuesday\0tues\0tuesday\0"
-    "wed\0wednesday\0thu\0thursday\0thur\0thursday\0thurs\0thursday\0fri\0friday\0";
+/* Abbreviations only with a point, with what is said; from SHORT_PLACES on what is numbered. */
+#define SHORT_PLACES 6
+static const char shorts[] = "gen\0general\0gov\0governor\0sen\0senator\0rep\0representative\0rev\0reverend\0ft\0fort\0"
+                             "apt\0apartment\0fig\0figure\0";
+
+/* What abbreviations mean behind a name; the first two unless another name follows. */
+static const char streets[] = "st\0street\0dr\0drive\0ave\0avenue\0ln\0lane\0";
 
 /* Words that are no names although they have a capital at a sentence's beginning: "Dr" behind them is no drive, and "St"
  * before them no saint. */
 static const char no_names[] =
     "the\0my\0our\0your\0his\0her\0their\0he\0she\0it\0they\0we\0this\0that\0there\0what\0when\0where\0if\0in\0"
     "on\0at\0to\0from\0by\0near\0and\0but\0so\0for\0with\0is\0are\0no\0yes\0hi\0hello\0thanks\0dear\0ask\0call\0"
-    "see\0st\0dr\0";
-
-static const char large_numbers[] = "hundred\0thousand\0million\0billion\0trillion\0";
+    "see\0st\0dr\0then\0you\0you'll\0turn\0go\0take\0walk\0continue\0keep\0follow\0after\0cross\0please\0now\0head\0"
+    "look\0visit\0apt\0suite\0";
 
 /* Units behind a number; behind a blank only the second list. Behind those that are first in their lists a number
  * goes on: M, bn, sq. */
@@ -90,7 +91,7 @@ static const char short_words[] =
     "AN\0AS\0AT\0BE\0BY\0DO\0GO\0HE\0HI\0IF\0IN\0IS\0ME\0MY\0NO\0OF\0OH\0ON\0OR\0OX\0SO\0TO\0UP\0WE\0YO\0HA\0AH\0UH\0"
     "UM\0EH\0ACE\0ACT\0ADD\0AGE\0AGO\0AHA\0AID\0AIM\0AIR\0ALL\0AND\0ANT\0ANY\0APP\0ARC\0ARE\0ARM\0ART\0ASH\0ASK\0ATE\0"
     "AXE\0EAR\0EAT\0EGG\0END\0EVE\0EYE\0ICE\0ILL\0INK\0INN\0ITS\0OAK\0ODD\0OFF\0OIL\0OLD\0ONE\0OUR\0OUT\0OWE\0OWN\0"
-    "UGH\0USE\0GYM\0VIA\0";
+    "UGH\0USE\0GYM\0VIA\0AMY\0AVA\0BYE\0EVA\0IAN\0MIA\0LYNX\0MYTH\0NYMPH\0QUEUE\0";
 static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
 /* Small letters without a vowel that are not read one by one: sounds and parts of words. */
@@ -107,7 +108,7 @@ static const char codas[] =
     "ST\0TH\0TT\0WD\0WL\0WN\0XT\0DTH\0FTH\0GHT\0LDT\0LTH\0NCH\0NTH\0PTH\0RCH\0RLD\0RNT\0RSH\0RST\0RTH\0TCH\0XTH\0DST\0"
     "HN\0PP\0RR\0SC\0";
 static const char vowel_runs[] = "AI\0AU\0AY\0EA\0EE\0EI\0EU\0EY\0IA\0IE\0IO\0OA\0OE\0OI\0OO\0OU\0OY\0UA\0UE\0UI\0UO\0"
-                                 "UY\0YE\0YI\0EO\0AO\0UIE\0UEE\0EYE\0OYA\0AYE\0IOU\0";
+                                 "UY\0YE\0YI\0EO\0AO\0UIE\0UEE\0EYE\0OYA\0AYE\0IOU\0AYO\0YA\0";
 static const char last_runs[] = "AY\0EA\0EE\0EY\0IE\0OE\0OO\0OU\0OY\0UE\0UY\0";
 
 /* Letters that stand together. */
@@ -226,7 +227,7 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
         return (letters[0] != 'A' && letters[0] != 'I') ||
                (letters[0] == 'A' && run->small == 0u &&
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
-                 !labial_words_is_blank(follows)));
+                 run->before == '/' || !labial_words_is_blank(follows)));
     if (run->is_small)
         return spelt_small_letters(run);
     if (run->small != 0u) {
@@ -350,9 +351,9 @@ static int read_unit(labial_words_reading_t *reading, unsigned after)
     if (larger == 'h' && name == units + sizeof "sq\0square\0m")
         name = "minute_";
     context->tail = 0;
-    context->currency = name[1] == 'o' ? (uint8_t)name[0] : 0u;
-    if (here->code == SIGN_SQUARE) {
-        labial_words_say(reading, "square", SAID_PLAIN, character);
+    context->currency = name[1] == 'o' && name[0] != 'p' ? (uint8_t)name[0] : 0u;
+    if (here->code == SIGN_SQUARE || here->code == SIGN_CUBE) {
+        labial_words_say(reading, here->code == SIGN_CUBE ? "cubic" : "square", SAID_PLAIN, character);
         labial_words_advance(here);
     }
     labial_words_say_name(reading, name, after == AFTER_NUMBER, character);
@@ -386,18 +387,120 @@ static unsigned after_month(labial_words_reading_t *reading, unsigned after, uns
     return AFTER_NOTHING;
 }
 
+/* Says what a run means in a list of two texts each; returns its number there, or -1. */
+static int say_meaning(labial_words_reading_t *reading, const run_t *run, const char *list)
+{
+    const int found = find_run(run, list, 2);
+    if (found >= 0)
+        labial_words_say(reading, labial_words_listed(list, 2u * (unsigned)found + 1u), SAID_PLAIN,
+                         run->letters[0].character);
+    return found;
+}
+
 /* Reads "St" and "Dr" behind a name, which mean street and drive unless another name follows: that takes them back. */
 static int read_street(labial_words_reading_t *reading, const run_t *run)
 {
     const unsigned first = reading->word->count;
-    const int found = run->is_title ? find_run(run, "st\0dr\0", 1) : -1;
+    const int found = say_meaning(reading, run, streets);
     if (found < 0)
         return 0;
-    labial_words_say(reading, found == 0 ? "street" : "drive", SAID_PLAIN, run->letters[0].character);
     labial_words_keep_tail(reading, first);
     reading->context->after = (uint8_t)(AFTER_STREET + found);
     if (reading->here.code == '.')
         labial_words_advance(&reading->here);
+    return 1;
+}
+
+/* The number of Roman numerals up to 29, or 0. They are three letters or more, II, or two capitals behind a name or
+ * what is numbered. */
+static unsigned roman(const run_t *run, int is_named)
+{
+    unsigned tens = 0;
+    int ones;
+    if (run->count < 2u || run->count > 6u ||
+        (run->capitals[0] != 'I' && run->capitals[0] != 'V' && run->capitals[0] != 'X'))
+        return 0;
+    while (tens < 2u && run->capitals[tens] == 'X')
+        tens++;
+    ones = labial_words_find(run->capitals + tens, run->count - tens, "i\0ii\0iii\0iv\0v\0vi\0vii\0viii\0ix\0", 1);
+    if (ones < 0 || (run->count == 2u && ones != 1 && (!is_named || run->small != 0u)))
+        return 0;
+    return tens * TEN + (unsigned)ones + 1u;
+}
+
+/* The number of a month or a day whose name a run is or begins, with three letters or from s on with up to five; or -1.
+ * Notes the character of the name that is behind the run. */
+static int date_of(const run_t *run, char *rest)
+{
+    const char *name = labial_words_dates;
+    int number;
+    if (!run->is_title || run->count >= sizeof run->capitals)
+        return -1;
+    for (number = 0; number < DATES; number++, name = labial_words_listed(name, 1)) {
+        unsigned i;
+        for (i = 0; i < run->count && name[i] - ('a' - 'A') == run->capitals[i]; i++)
+            ;
+        *rest = name[i];
+        if (i == run->count && (*rest == '\0' || (i > 2u && i < (*name >= 's' ? 6u : 4u))))
+            return number;
+    }
+    return -1;
+}
+
+/* Short names of dates that are words otherwise, as a bit each: Jan, Mar, Mon, Sat, Sun. */
+#define DOUBTFUL 0x61005ul
+
+/* Reads a month or a day in short, and notes one in full; returns whether it was said. Names that are words otherwise
+ * are dates behind the number of a day, next to another date and, but for Sat and Sun, with a point; if none of this
+ * holds, what follows may correct them. */
+static int read_date_name(labial_words_reading_t *reading, const run_t *run, unsigned after)
+{
+    labial_words_context_t *const context = reading->context;
+    const unsigned character = run->letters[0].character;
+    char rest = 0;
+    const int found = date_of(run, &rest);
+    int is_sure;
+    if (found < 0)
+        return 0;
+    if (after == AFTER_DATE)
+        labial_words_correct(reading, character);
+    is_sure = (DOUBTFUL >> found & 1u) == 0u || after == AFTER_DATE || after == AFTER_DAY;
+    context->after = (uint8_t)(found < MONTHS ? after_month(reading, after, character) : (unsigned)AFTER_DAY);
+    if (rest == '\0')
+        return 0;
+    if (reading->here.code == '.') {
+        labial_words_advance(&reading->here);
+        is_sure |= found <= MONDAY;
+    }
+    if (!is_sure && context->after != AFTER_NOTHING) { /* nothing: the month of a day */
+        context->after = AFTER_DATE;
+        context->currency = (uint8_t)found;
+        return 0;
+    }
+    labial_words_say(reading, labial_words_listed(labial_words_dates, (unsigned)found), SAID_PLAIN, character);
+    return 1;
+}
+
+/* Reads a word in short with a point behind it; returns whether it was said. Of "No.", "Nos." and "ca." a number makes
+ * other words. */
+static int read_short(labial_words_reading_t *reading, const run_t *run)
+{
+    int found;
+    if (reading->here.code != '.' || reading->is_address)
+        return 0;
+    found = run->is_title || run->is_small ? find_run(run, "no\0nos\0ca\0", 1) : -1;
+    if (found >= 0) {
+        reading->context->after = AFTER_NO;
+        reading->context->currency = (uint8_t)(DATES + found);
+        labial_words_advance(&reading->here);
+        return 0;
+    }
+    found = run->is_small ? -1 : say_meaning(reading, run, shorts);
+    if (found < 0)
+        return 0;
+    if (found >= SHORT_PLACES)
+        reading->context->after = AFTER_PLACE;
+    labial_words_advance(&reading->here);
     return 1;
 }
 
@@ -423,31 +526,15 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         labial_words_spell(reading->model, run->letters, run->count, reading->word);
         return 1;
     }
-    found = after == AFTER_SUM ? find_run(run, large_numbers, 1) : -1;
+    found = after == AFTER_SUM ? find_run(run, labial_words_listed(labial_words_cardinals, HUNDRED), 1) : -1;
     if (found >= 0) {
         labial_words_take_back(reading);
-        labial_words_say(reading, labial_words_listed(large_numbers, (unsigned)found), SAID_PLAIN, character);
+        labial_words_say_last(reading, (unsigned)found + HUNDRED, CARDINAL, character);
         labial_words_say_name(reading, labial_words_currency_name(reading->context->currency), 1, character);
         return 1;
     }
-    found = run->is_title ? find_run(run, dates, 2) : -1;
-    if (found >= 0) {
-        if (found < DATE_MONTHS)
-            reading->context->after = (uint8_t)after_month(reading, after, character);
-        labial_words_say(reading, labial_words_listed(dates, 2u * (unsigned)found + 1u), SAID_PLAIN, character);
-        if (follows == '.')
-            labial_words_advance(&reading->here);
+    if (read_date_name(reading, run, after) || read_short(reading, run))
         return 1;
-    }
-    found = follows == '.' && run->is_title ? find_run(run, "no\0nos\0", 1) : -1;
-    if (found >= 0) {
-        count = reading->word->count;
-        labial_words_spell(reading->model, run->letters, run->count, reading->word);
-        labial_words_keep_tail(reading, count);
-        reading->context->after = (uint8_t)(AFTER_NO + found);
-        labial_words_advance(&reading->here);
-        return 1;
-    }
     if (run->count == 1u && run->small != 0u && follows == '/' && run->capitals[0] == 'W') {
         labial_words_say(reading, "with", SAID_PLAIN, character);
         reading->context->after = AFTER_WITH;
@@ -462,6 +549,10 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     found = find_run(run, list, 2);
     if (found >= 0) {
         list = labial_words_listed(list, 2u * (unsigned)found + 1u);
+        if (*list == '+') {
+            reading->context->after = AFTER_PLACE;
+            return 0;
+        }
         if (*list == '-')
             say_letters(reading, run, run->count);
         else
@@ -480,6 +571,7 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     labial_words_context_t *const context = reading->context;
     labial_words_place_t next = reading->here;
     const unsigned after = labial_words_forget(reading), shouting = context->shouting, named = context->named;
+    unsigned number, first;
     run_t run;
     context->named = 0;
     labial_words_advance(&next);
@@ -490,16 +582,25 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER) && read_unit(reading, after))
         return;
     take_run(&reading->here, &run);
+    reading->has_letters = 1;
     context->named = run.count > 1u && (run.small & 1u) == 0u && find_run(&run, no_names, 1) < 0;
     if (context->named && (after == AFTER_STREET || after == AFTER_DRIVE)) {
         labial_words_take_back(reading);
         labial_words_say(reading, after == AFTER_STREET ? "saint" : "doctor", SAID_PLAIN, run.letters[0].character);
     }
+    first = reading->word->count;
     context->shouting = 0;
+    if (after == AFTER_PLACE && (run.count == 1u || find_run(&run, "and\0or\0to\0", 1) >= 0))
+        context->after = AFTER_PLACE;
+    number = roman(&run, named != 0u || after == AFTER_PLACE);
+    if (number != 0u) {
+        labial_words_say_small(reading, number, CARDINAL, run.letters[0].character);
+        return;
+    }
     if ((named && read_street(reading, &run)) || read_rule(reading, &run, after, shouting))
         return;
-    if (run.is_title && find_run(&run, labial_words_months, 1) >= 0)
-        context->after = (uint8_t)after_month(reading, after, run.letters[0].character);
     labial_words_spell(reading->model, run.letters, run.count, reading->word);
+    if (context->after == AFTER_DATE || context->after == AFTER_NO)
+        labial_words_keep_tail(reading, first);
     context->shouting = run.small == 0u && (run.count > 1u || run.capitals[0] == 'I');
 }

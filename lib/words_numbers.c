@@ -8,16 +8,13 @@
 #include "labial/labial.h"
 #include "words_parts.h"
 
-/* Spoken for numbers, and the same as ordinals. */
-static const char cardinals[] = "zero\0one\0two\0three\0four\0five\0six\0seven\0eight\0nine\0ten\0eleven\0twelve\0"
-                                "thirteen\0fourteen\0fifteen\0sixteen\0seventeen\0eighteen\0nineteen\0twenty\0thirty\0"
-                                "forty\0fifty\0sixty\0seventy\0eighty\0ninety\0hundred\0thousand\0million\0billion\0"
-                                "trillion\0";
-static const char ordinals[] = "zeroth\0first\0second\0third\0fourth\0fifth\0sixth\0seventh\0eighth\0ninth\0tenth\0"
-                               "eleventh\0twelfth\0thirteenth\0fourteenth\0fifteenth\0sixteenth\0seventeenth\0"
-                               "eighteenth\0nineteenth\0twentieth\0thirtieth\0fortieth\0fiftieth\0sixtieth\0"
-                               "seventieth\0eightieth\0ninetieth\0hundredth\0thousandth\0millionth\0billionth\0"
-                               "trillionth\0";
+/* Spoken for numbers; ordinals that are more than these with -th, and empty texts for those that are not. */
+const char labial_words_cardinals[] =
+    "zero\0one\0two\0three\0four\0five\0six\0seven\0eight\0nine\0ten\0eleven\0twelve\0"
+    "thirteen\0fourteen\0fifteen\0sixteen\0seventeen\0eighteen\0nineteen\0twenty\0thirty\0"
+    "forty\0fifty\0sixty\0seventy\0eighty\0ninety\0hundred\0thousand\0million\0billion\0"
+    "trillion\0";
+static const char ordinals[] = "\0first\0second\0third\0\0fifth\0\0\0eighth\0ninth\0\0\0twelfth\0";
 
 /* Signs of money, the names of whole units, and of their hundredths. */
 static const uint8_t currency_signs[] = { '$', SIGN_EURO, SIGN_POUND, SIGN_YEN, SIGN_RUPEE };
@@ -35,7 +32,7 @@ unsigned labial_words_here(const labial_words_reading_t *reading)
 static void say_part(labial_words_reading_t *reading, unsigned *last, unsigned next, unsigned character)
 {
     if (*last < NO_WORD)
-        labial_words_say(reading, labial_words_listed(cardinals, *last), SAID_PLAIN, character);
+        labial_words_say(reading, labial_words_listed(labial_words_cardinals, *last), SAID_PLAIN, character);
     *last = next;
 }
 
@@ -58,8 +55,12 @@ static void say_hundreds(labial_words_reading_t *reading, unsigned *last, unsign
 /* Says the last word of a number. */
 void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsigned ending, unsigned character)
 {
-    labial_words_say(reading, labial_words_listed(ending == ORDINAL || ending == ORDINALS ? ordinals : cardinals, last),
-                     ending >= PLURALS ? SAID_PLURAL : SAID_PLAIN, character);
+    const char *word = labial_words_listed(labial_words_cardinals, last);
+    if ((ending & SAID_ORDINAL) != 0u && last <= 12u && *labial_words_listed(ordinals, last) != '\0') {
+        word = labial_words_listed(ordinals, last);
+        ending &= SAID_PLURAL;
+    }
+    labial_words_say(reading, word, ending, character);
 }
 
 /* Says up to 9,999, of which years need no more. */
@@ -103,7 +104,7 @@ static void say_number(labial_words_reading_t *reading, const labial_words_numbe
 
 static void say_digit(labial_words_reading_t *reading, unsigned digit, unsigned character)
 {
-    labial_words_say(reading, labial_words_listed(cardinals, digit), SAID_PLAIN, character);
+    labial_words_say(reading, labial_words_listed(labial_words_cardinals, digit), SAID_PLAIN, character);
 }
 
 /* Adds the digit here to a number. */
@@ -187,7 +188,7 @@ void labial_words_read_fraction(labial_words_reading_t *reading)
 static int takes_range(labial_words_place_t *here)
 {
     labial_words_place_t next = *here;
-    if (next.code != '-' && next.code != ':' && next.code != SIGN_DASH)
+    if (next.code != '-' && next.code != ':')
         return 0;
     labial_words_advance(&next);
     if (!labial_words_is_decimal(next.code) && !labial_words_is_sum(&next))
@@ -229,21 +230,27 @@ static int takes_ordinal(labial_words_place_t *here)
     return 0;
 }
 
-/* What may follow a number: halves, another one up to which it reaches or by which it is multiplied. */
+/* Moves behind an ordinal's ending or a plural's s and returns how the number ends. The s is no second in a word that
+ * has letters, and behind three or four digits but round ones: "F-16s", "mp3s", "the 747s". */
+static unsigned take_ending(labial_words_reading_t *reading, const labial_words_number_t *number)
+{
+    labial_words_place_t *here = &reading->here;
+    if (takes_ordinal(here))
+        return ORDINAL;
+    if (here->code != 's' || labial_words_is_inside(labial_words_following(here)) ||
+        (reading->has_letters == 0u &&
+         (number->count < 3u || number->count > 4u || number->digits[number->count - 1u] == 0u)))
+        return CARDINAL;
+    labial_words_advance(here);
+    return PLURALS;
+}
+
+/* What may follow a number: another one up to which it reaches or by which it is multiplied. */
 static void read_behind(labial_words_reading_t *reading)
 {
     labial_words_place_t *here = &reading->here;
     const unsigned code = here->code;
-    if (code == SIGN_HALF || code == SIGN_QUARTER || code == SIGN_QUARTERS) {
-        labial_words_say(reading,
-                         code == SIGN_HALF      ? "and a half"
-                         : code == SIGN_QUARTER ? "and a quarter"
-                                                : "and three quarters",
-                         SAID_PLAIN, labial_words_here(reading));
-        reading->context->after = AFTER_NUMBER;
-        reading->context->tail = 0;
-        labial_words_advance(here);
-    } else if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
+    if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
         labial_words_say(reading, "by", SAID_PLAIN, labial_words_here(reading));
         labial_words_advance(here);
     } else {
@@ -260,13 +267,14 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
     if (is_coded(&number)) {
         *here = first;
         labial_words_say_digits(reading, 1);
-    } else if (takes_ordinal(here)) {
-        say_number(reading, &number, ORDINAL, first.characters - 1u);
-        reading->context->after = AFTER_NOTHING;
-        reading->context->named = 1;
-        return;
     } else {
-        say_number(reading, &number, CARDINAL, first.characters - 1u);
+        const unsigned ending = take_ending(reading, &number);
+        say_number(reading, &number, ending, first.characters - 1u);
+        if (ending != CARDINAL) {
+            reading->context->after = AFTER_NOTHING;
+            reading->context->named = ending == ORDINAL;
+            return;
+        }
         if (number.count == 1u && number.value == 1u)
             reading->context->after = AFTER_ONE;
         if (is_start && reading->context->currency == 0u && number.value - 1u < 31u) { /* a month may follow */
@@ -286,11 +294,13 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
 void labial_words_read_number(labial_words_reading_t *reading)
 {
     labial_words_context_t *context = reading->context;
-    const unsigned after = context->after;
+    unsigned after = context->after;
     const int is_start = !labial_words_is_inside(reading->here.before);
-    if (after == AFTER_NO || after == AFTER_NOS) {
-        labial_words_take_back(reading);
-        labial_words_say(reading, "number", after == AFTER_NOS ? SAID_PLURAL : SAID_PLAIN, labial_words_here(reading));
+    const int is_name = after == AFTER_PLACE || reading->has_letters != 0u;
+    if (after == AFTER_NO || after == AFTER_DATE) {
+        labial_words_correct(reading, labial_words_here(reading));
+        if (context->currency < MONTHS)
+            after = AFTER_MONTH;
     }
     context->after = AFTER_NUMBER;
     context->tail = context->named = 0;
@@ -299,6 +309,9 @@ void labial_words_read_number(labial_words_reading_t *reading)
     if (is_start && labial_words_read_special(reading, after))
         return;
     read_plain(reading, is_start);
+    if (is_name && labial_words_is_latin(reading->here.code) &&
+        !labial_words_is_inside(labial_words_following(&reading->here)))
+        context->after = AFTER_PLACE;
 }
 
 /* ---- Sums of money ---------------------------------------------------------------------------------------------- */
@@ -407,7 +420,7 @@ static int read_amount(labial_words_reading_t *reading, unsigned character, int 
         }
         first = reading->word->count;
         if (scale != NO_WORD) {
-            labial_words_say(reading, labial_words_listed(cardinals, scale), SAID_PLAIN, last);
+            labial_words_say(reading, labial_words_listed(labial_words_cardinals, scale), SAID_PLAIN, last);
             context->after = AFTER_NOTHING;
         }
         if (scale != NO_WORD || !is_lower)

@@ -42,11 +42,8 @@ enum {
     SIGN_SQUARE,
     SIGN_TIMES,
     SIGN_MINUS,
-    SIGN_DASH,
-    SIGN_HALF,
-    SIGN_QUARTER,
-    SIGN_QUARTERS,
-    SIGN_DIVIDED
+    SIGN_DIVIDED,
+    SIGN_CUBE
 };
 
 /* What was said last, in `after` of labial_words_context_t. */
@@ -59,11 +56,15 @@ enum {
     AFTER_UNIT,
     AFTER_PER,
     AFTER_MONTH,
-    AFTER_WITH, /* "w" of "w/" */
-    AFTER_NO,   /* "No.", "Nos." */
-    AFTER_NOS,
-    AFTER_STREET, /* "St", "Dr" behind a name */
-    AFTER_DRIVE
+    AFTER_WITH,   /* "w" of "w/" */
+    AFTER_STREET, /* "St", "Dr", "Ave", "Ln" behind a name */
+    AFTER_DRIVE,
+    AFTER_AVENUE,
+    AFTER_LANE,
+    AFTER_NO,   /* "No.", "Nos.", "ca.", of which a number makes other words */
+    AFTER_DATE, /* "Mon", "Jan", of which a number or a date makes a day or month; it and the next outlast , - / */
+    AFTER_DAY,  /* the name of a day */
+    AFTER_PLACE /* "seat", "gate": the letter of its number is no unit */
 };
 
 /* A place in a text. */
@@ -76,7 +77,7 @@ typedef struct {
     unsigned code;       /* of the current one: ASCII or one of the above */
     unsigned before;     /* of the one before, a blank at the beginning */
     unsigned accent;     /* of the current one, 0 for none */
-    unsigned pending;    /* further letters of a ligature, the next one in the low byte */
+    unsigned pending;    /* further characters of a ligature or a fraction, the next one in the low byte */
 } labial_words_place_t;
 
 /* A place in a text, and the word that it becomes. */
@@ -87,6 +88,7 @@ typedef struct {
     labial_words_place_t here;
     unsigned is_tail_here; /* what may be taken back is at the end of `word` */
     unsigned is_address;   /* a web address was recognised in this word */
+    unsigned has_letters;  /* letters stand in this word, behind them a hyphen or a number at most */
 } labial_words_reading_t;
 
 /* ---- Characters ------------------------------------------------------------------------------------------------- */
@@ -112,10 +114,10 @@ unsigned labial_words_small_letter(unsigned code);
 /* ---- What is said ----------------------------------------------------------------------------------------------- */
 
 /* How the last of several words ends. */
-enum { SAID_PLAIN, SAID_PLURAL };
+enum { SAID_PLAIN, SAID_PLURAL, SAID_ORDINAL };
 
-/* Says words of small letters, separated by blanks, where the text's `character` is. With SAID_PLURAL the last one gets
- * an s, or -ies for -y. */
+/* Says words of small letters, separated by blanks, where the text's `character` is. With SAID_ORDINAL the last one
+ * gets -th, or -ieth for -y; with SAID_PLURAL, also beside that, an s, or -ies for -y. */
 void labial_words_say(labial_words_reading_t *reading, const char *words, unsigned ending, unsigned character);
 
 /* Says a name in singular or plural: "foot|feet", or with _ where an s goes. */
@@ -130,6 +132,9 @@ void labial_words_take_back(labial_words_reading_t *reading);
 
 /* What was said last matters no more; returns what it was. */
 unsigned labial_words_forget(labial_words_reading_t *reading);
+
+/* Takes back what was said in short, and says in full what the context has noted for that. */
+void labial_words_correct(labial_words_reading_t *reading, unsigned character);
 
 /* Lists are texts that end with NUL, and an empty one. The text of a number in a list. */
 const char *labial_words_listed(const char *list, unsigned number);
@@ -153,8 +158,11 @@ void labial_words_read_letters(labial_words_reading_t *reading);
 /* Numbers of words that are said: those up to TWENTY themselves, then tens. */
 enum { TEN = 10, TWENTY = 20, HUNDRED = 28, THOUSAND, MILLION, BILLION, TRILLION, NO_WORD };
 
+/* Words of numbers, by these numbers. */
+extern const char labial_words_cardinals[];
+
 /* How a number ends. */
-enum { CARDINAL, ORDINAL, PLURALS, ORDINALS };
+enum { CARDINAL = SAID_PLAIN, PLURALS = SAID_PLURAL, ORDINAL = SAID_ORDINAL, ORDINALS = SAID_PLURAL + SAID_ORDINAL };
 
 /* Digits as they stand in a text. */
 typedef struct {
@@ -188,8 +196,9 @@ int labial_words_read_range(labial_words_reading_t *reading);
 /* Reads dates, times and whatever is more than a number, `after` what was said before; whether there is any. */
 int labial_words_read_special(labial_words_reading_t *reading, unsigned after);
 
-/* Names of months, as a list. */
-extern const char labial_words_months[];
+/* Names of months, and behind them those of days; then what "No.", "Nos." and "ca." mean. */
+enum { MONTHS = 12, MONDAY = 12, DATES = 19 };
+extern const char labial_words_dates[];
 
 /* The number of a sign of money, or -1; its name. */
 int labial_words_currency(unsigned code);

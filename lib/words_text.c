@@ -13,12 +13,13 @@
 /* Words of a tag or stage direction, at most. */
 #define DIRECTION 8u
 
-/* Letters of the longest word that is said: "approximately". */
-#define LONGEST_SAID 16u
+/* Letters of the longest word that is said, "representative", and of the longest ending. */
+#define LONGEST_SAID 18u
 
-/* Signs that are said; a blank separates spoken words. The last ones are SIGN_SQUARE, SIGN_TIMES, SIGN_MINUS and
- * SIGN_DIVIDED. */
-static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0\11squared\0\12times\0\13minus\0\20divided by\0";
+/* Signs that are said; a blank separates spoken words. The last ones are SIGN_SQUARE, SIGN_TIMES, SIGN_MINUS,
+ * SIGN_DIVIDED and SIGN_CUBE. */
+static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0\11squared\0\12times\0\13minus\0\14divided by\0"
+                            "\15cubed\0";
 
 /* Signs that are said within an address. */
 static const char joints[] = "/slash\0-dash\0_underscore\0:colon\0";
@@ -26,9 +27,10 @@ static const char joints[] = "/slash\0-dash\0_underscore\0:colon\0";
 /* Stage directions: the beginnings of verbs, behind which s, es or ing stands; words that stand alone; and words in -s
  * that are no verbs. */
 static const char verbs[] =
-    "applaud\0beam\0blink\0blush\0breath\0burp\0chuckl\0clap\0clear\0cough\0cr\0cri\0exhal\0frown\0gasp\0giggl\0glanc\0"
-    "grin\0groan\0gulp\0hum\0inhal\0laugh\0mumbl\0mutter\0nod\0nodd\0paus\0pout\0scream\0shout\0shrug\0sigh\0sing\0"
-    "smil\0smirk\0snap\0snapp\0snicker\0sniff\0snort\0sob\0sobb\0swallow\0wav\0whisper\0whistl\0wink\0yawn\0yell\0";
+    "applaud\0beam\0blink\0blush\0breath\0burp\0chuckl\0clap\0clapp\0clear\0cough\0cri\0cry\0exhal\0frown\0gasp\0"
+    "giggl\0glanc\0grin\0grinn\0groan\0gulp\0hum\0humm\0inhal\0laugh\0mumbl\0mutter\0nod\0nodd\0paus\0pout\0scream\0"
+    "shout\0shrug\0shrugg\0sigh\0sing\0smil\0smirk\0snap\0snapp\0snicker\0sniff\0snort\0sob\0sobb\0swallow\0wav\0"
+    "whisper\0whistl\0wink\0yawn\0yell\0";
 static const char alone[] =
     "applause\0beat\0blush\0breath\0chuckle\0clap\0cough\0cry\0gasp\0giggle\0grin\0groan\0gulp\0"
     "hum\0laugh\0laughter\0mumble\0music\0mutter\0nod\0pause\0quietly\0scream\0shout\0shrug\0sigh\0silence\0smile\0"
@@ -39,25 +41,28 @@ static const char not_verbs[] = "always\0perhaps\0sometimes\0things\0this\0does\
 
 /* ---- What is said ----------------------------------------------------------------------------------------------- */
 
-/* Says one word of small letters; with SAID_PLURAL an s behind it, or -ies for -y. */
+/* Says one word of small letters with an ending: -th or -s, before which -y becomes -ie. */
 static void say_word(labial_words_reading_t *reading, const char *word, size_t size, unsigned ending,
                      unsigned character)
 {
     labial_words_letter_t letters[LONGEST_SAID];
     unsigned count = 0;
     memset(letters, 0, sizeof letters);
-    for (; count < LONGEST_SAID - 3u; count++) {
+    for (; count < LONGEST_SAID - 4u; count++) {
         if (count >= size)
             break;
         letters[count].letter = (uint8_t)(word[count] == '\'' ? 27 : word[count] - 'a' + 1);
     }
-    if (ending == SAID_PLURAL) {
-        if (word[count - 1u] == 'y') {
-            letters[count - 1u].letter = 'i' - 'a' + 1;
-            letters[count++].letter = 'e' - 'a' + 1;
-        }
-        letters[count++].letter = 's' - 'a' + 1;
+    if (ending != SAID_PLAIN && word[count - 1u] == 'y') {
+        letters[count - 1u].letter = 'i' - 'a' + 1;
+        letters[count++].letter = 'e' - 'a' + 1;
     }
+    if ((ending & SAID_ORDINAL) != 0u) {
+        letters[count++].letter = 't' - 'a' + 1;
+        letters[count++].letter = 'h' - 'a' + 1;
+    }
+    if ((ending & SAID_PLURAL) != 0u)
+        letters[count++].letter = 's' - 'a' + 1;
     for (size = 0; size < count; size++)
         letters[size].character = (uint8_t)character;
     labial_words_spell(reading->model, letters, count, reading->word);
@@ -128,6 +133,13 @@ const char *labial_words_said_of(const char *list, unsigned sign)
         if ((unsigned char)*list == sign)
             return list + 1;
     return NULL;
+}
+
+void labial_words_correct(labial_words_reading_t *reading, unsigned character)
+{
+    labial_words_take_back(reading);
+    labial_words_say(reading, labial_words_listed(labial_words_dates, reading->context->currency), SAID_PLAIN,
+                     character);
 }
 
 /* What was said last matters no more; returns what it was. */
@@ -312,8 +324,16 @@ static void read_sign(labial_words_reading_t *reading)
         open_tag(reading, closing);
         return;
     }
+    if (reading->context->after >= AFTER_DATE && !reading->is_address && here->before != ' ' &&
+        (code == ',' || code == '-' || code == '/')) {
+        reading->context->named = 0;
+        labial_words_advance(here);
+        return;
+    }
     after = labial_words_forget(reading);
     reading->context->tail = reading->context->named = 0;
+    if (code != '-')
+        reading->has_letters = 0;
     is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
     if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
         reading->context->after = AFTER_NUMBER;
@@ -327,11 +347,6 @@ static void read_sign(labial_words_reading_t *reading)
         reading->context->after = AFTER_PER;
     } else if (code == '.' || code == '/' || code == '-' || code == '_' || code == ':') {
         read_joint(reading);
-    } else if (code == SIGN_HALF || code == SIGN_QUARTER || code == SIGN_QUARTERS) {
-        labial_words_say_here(reading, code == SIGN_HALF      ? "one half"
-                                       : code == SIGN_QUARTER ? "one quarter"
-                                                              : "three quarters");
-        reading->context->after = AFTER_NUMBER;
     } else if (code == SIGN_CENT && is_counted) {
         labial_words_say_here(reading, after == AFTER_NUMBER ? "cents" : "cent");
     } else if (currency >= 0 && is_counted) {
@@ -347,6 +362,8 @@ static void read_sign(labial_words_reading_t *reading)
         labial_words_say_here(reading, said);
     }
     labial_words_advance(here);
+    if (code == '%')
+        (void)labial_words_read_range(reading);
 }
 
 /* ---- The whole -------------------------------------------------------------------------------------------------- */
@@ -355,7 +372,7 @@ static void read_sign(labial_words_reading_t *reading)
 static void end_word(labial_words_reading_t *reading)
 {
     labial_words_context_t *const context = reading->context;
-    reading->is_address = 0;
+    reading->is_address = reading->has_letters = 0;
     if (context->closing != 0u && --context->left == 0u)
         context->closing = 0;
 }

@@ -454,6 +454,9 @@ TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
     assert_int_equal(labial_voice_begin(&voice, 4500, 0), LABIAL_OK);
     tell_one("M", 0, 500);
     assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M");
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    tell_one("S", 100, 200);
+    assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)

@@ -284,7 +284,16 @@ TEST(words_know_those_before)
                   { "in", "_IH:0 N:0 CH:0 IH:0 Z:0", 0 },
                   { "Elm", "_EH:0 L:1 M:2", 0 },
                   { "St.", "_S:0 T:0 R:0 IY:0 T:0", 0 },
-                  { "Louis", "_S:0 EY:0 N:0 T:0 _L:0 UW:2 IY:3 Z:4", 5 } };
+                  { "Louis", "_S:0 EY:0 N:0 T:0 _L:0 UW:2 IH:3 S:4", 5 },
+                  { "Mon,", "_M:0 AA:1 N:2", 0 },
+                  { "Mar", "_M:0 AH:0 N:0 D:0 EY:0 _M:0 AA:0 R:0 CH:0", 3 },
+                  { "5", "_F:0 IH:0 F:0 TH:0", 0 },
+                  { "Mar", "_M:0 AA:1 R:2", 0 },
+                  { "5", "_M:0 AA:0 R:0 CH:0 _F:0 IH:0 F:0 TH:0", 3 },
+                  { "seat", "_S:0 IY:1 T:3", 0 },
+                  { "5C", "_F:0 AY:0 V:0 _S:1 IY:1", 0 },
+                  { "or", "_AO:0 R:1", 0 },
+                  { "6C", "_S:0 IH:0 K:0 S:0 _S:1 IY:1", 0 } };
     labial_words_context_t context;
     labial_word_t word;
     unsigned i;

@@ -64,6 +64,12 @@ void labial_words_take_back(labial_words_reading_t *reading)
     reading->context->tail = 0;
 }
 
+void labial_words_correct(labial_words_reading_t *reading, unsigned character)
+{
+    labial_words_take_back(reading);
+    grow(reading->word);
+}
+
 unsigned labial_words_forget(labial_words_reading_t *reading)
 {
     const unsigned after = reading->context->after;

@@ -1,7 +1,7 @@
 """The reference of ``lib/words_characters.c``: the characters of a text as the rules see them.
 
 Each becomes a string of simple characters: ASCII, `FOREIGN` for a letter of another script, `NOTHING` for what is not
-said, or one of the signs below; ligatures become two or three letters, and marks none. A letter whose accent tells how
+said, or one of the signs below; ligatures and fractions become several, and marks none. A letter whose accent tells how
 it sounds has that sound as well.
 """
 
@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
 FOREIGN, NOTHING, BLANK = "\1", "\2", " "
-EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DASH = (chr(code) for code in range(3, 13))
-HALF, QUARTER, QUARTERS, DIVIDED = (chr(code) for code in range(13, 17))
+EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DIVIDED, CUBE = (chr(code) for code in range(3, 14))
 
-_SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "×": TIMES, "−": MINUS,
-          "–": DASH, "½": HALF, "¼": QUARTER, "¾": QUARTERS, "÷": DIVIDED,
-          "’": "'", "ʼ": "'", "µ": "u", "μ": "u"}  # fmt: skip
+_SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "³": CUBE, "×": TIMES,
+          "−": MINUS, "÷": DIVIDED, "’": "'", "‘": "'", "ʼ": "'", "`": "'", "µ": "u", "μ": "u",
+          "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-",
+          **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789"))}  # fmt: skip
 _BLANKS = ((9, 13), (0x20, 0x20), (0x85, 0x85), (0xA0, 0xA0), (0x2000, 0x200A), (0x2028, 0x2029), (0x202F, 0x202F),
            (0x205F, 0x205F), (0x3000, 0x3000))
 _FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))
@@ -25,7 +25,10 @@ _PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
           "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUu"
           "UuUuUuWwYyYZzZzZzs")  # fmt: skip
 _LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
-              "ﬅ": "st", "ﬆ": "st"}  # fmt: skip
+              "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}  # fmt: skip
+#: Fractions, which have blanks around them.
+_LIGATURES.update({sign: f" {number[0]}/{number[1]} " for sign, number in zip(
+    "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())})
 #: The accents that tell a sound, as combining marks: grave, acute, circumflex, tilde, diaeresis, cedilla; and those of
 #: U+00C0 to U+00DF, as of the small letters 32 behind.
 _ACCENTS = {0x300: "`", 0x301: "'", 0x302: "^", 0x303: "~", 0x308: ":", 0x327: ","}
@@ -48,26 +51,27 @@ def simple_characters(text: str) -> List[Simple]:
     """The simple characters of a text."""
     found: List[Simple] = []
     for place, character in enumerate(text):
+        simple = simplified(character)
         accent = _accent(character) or _ACCENTS.get(ord(text[place + 1]) if place + 1 < len(text) else 0, " ")
-        for plain in simplified(character):
-            sound = _SOUNDS.get(plain.lower() + accent)
+        for plain in simple:
+            sound = _SOUNDS.get(plain.lower() + accent) if simple[0].isalpha() else None
             found.append(Simple(plain, place, tuple(sound.split()) if sound else None))
     return found
 
 
 def simplified(character: str) -> str:
-    """One simple character, none for a mark, or the letters of a ligature."""
+    """One simple character, none for a mark, or those of a ligature or a fraction."""
     code = ord(character)
     if any(low <= code <= high for low, high in _MARKS):
         return ""
     if any(low <= code <= high for low, high in _BLANKS):
         return BLANK
     if 0xFF01 <= code <= 0xFF5E:
-        return chr(code - 0xFEE0)
-    if code < 0x80:
-        return character if 0x20 < code < 0x7F else NOTHING
+        return simplified(chr(code - 0xFEE0))
     if character in _SIGNS or character in _LIGATURES:
         return _SIGNS.get(character) or _LIGATURES[character]
+    if code < 0x80:
+        return character if 0x20 < code < 0x7F else NOTHING
     if 0xC0 <= code < 0x180:
         return _PLAIN[code - 0xC0].replace(" ", NOTHING)
     return FOREIGN if any(low <= code <= high for low, high in _FOREIGN) else NOTHING

@@ -15,6 +15,7 @@ _SCALES = ("trillion", "billion", "million", "thousand", "")
 _ORDINALS = {"one": "first", "two": "second", "three": "third", "five": "fifth", "eight": "eighth", "nine": "ninth",
              "twelve": "twelfth"}
 MONTHS = ("January February March April May June July August September October November December").split()
+DAYS = "Monday Tuesday Wednesday Thursday Friday Saturday Sunday".split()
 _MOST_DIGITS = 15
 
 #: Signs of money, the names of whole units and of their hundredths.
@@ -32,6 +33,7 @@ _DIGITS = re.compile(r"[0-9](?:,?[0-9])*")
 _ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})" + END)
 _DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
 _PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])"
+                    r"|[0-9](?:-[0-9]{2,4})+(?=-[A-Z])"
                     r"|[2-9][0-9]{2}(?P<sign>[. ])[0-9]{3}(?P=sign)[0-9]{4}(?!(?P=sign)?[0-9])(?![A-Za-z\1])")
 _GROUPS = (re.compile(r"[0-9]+(?:[- ][0-9]+)*"), re.compile(r"[0-9]+(?:\.[0-9]+){2,}"))
 _AREA = re.compile(r"[2-9][0-9]{2}(?=\))")
@@ -39,6 +41,8 @@ _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
 _SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
 _FEET = re.compile(r"([0-9]{1,2})'([0-9]{1,2})" + END)
 _ORDINAL = re.compile("(?:st|nd|rd|th)" + END, re.IGNORECASE)
+#: Numbers behind which s is no second, "747s"; and letters that are no units where letters name what is numbered.
+_MODEL, _PLURAL, _LETTER = re.compile("[0-9]{2,3}[1-9]"), re.compile("s" + END), re.compile("[A-Za-z]" + END)
 _DAY = re.compile(r"([0-9]{1,2})(?![A-Za-z0-9\1:/]|[.,][0-9])")
 _YEAR = re.compile(r"(?:1[1-9]|20)[0-9]{2}(?![A-Za-z0-9\1%]|\.[0-9])")
 _DECADE = re.compile(r"((?:1[1-9]|20)[0-9]0|[2-9]0)'?s" + END)
@@ -112,11 +116,12 @@ def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, 
 def read_number(said: Said, place: int) -> int:
     """Reads what begins with a digit; returns the place behind it."""
     is_start = not re.match("[A-Za-z0-9\1]", said.at(place - 1))
-    month = said.context.after == "month"
+    is_month = said.context.after == "month"
     is_counted = said.context.after in ("one", "number")
-    if said.context.after in ("no", "nos"):
-        said.take_back()
-        said.say("numbers" if said.context.after == "nos" else "number", place)
+    is_name = said.context.after == "place" or said.letters
+    if said.context.after in ("no", "date"):
+        said.correct(place)
+        is_month = said.context.short.title() in MONTHS
     if said.context.after != "unit":
         said.context.mark = ""
     said.context.after, said.context.tail, said.context.named = "number", 0, False
@@ -124,7 +129,7 @@ def read_number(said: Said, place: int) -> int:
         end = rule(said, place, is_counted)
         if end is not None:
             return end
-    day = _DAY.match(said.simple, place) if month and is_start else None
+    day = _DAY.match(said.simple, place) if is_month and is_start else None
     if day and 1 <= int(day[1]) <= 31:
         say_ordinal(said, day[1], place)
         end = read_range(said, day.end())
@@ -134,7 +139,10 @@ def read_number(said: Said, place: int) -> int:
     if year and not year[0].startswith("200"):
         said.say(" ".join(_year(year[0])), place)
         return read_range(said, year.end())
-    return _read_plain(said, place, is_start)
+    end = _read_plain(said, place, is_start)
+    if is_name and _LETTER.match(said.simple, end):
+        said.context.after = "place"
+    return end
 
 
 def _read_plain(said: Said, place: int, is_start: bool) -> int:
@@ -153,6 +161,11 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
             said.context.after = ""
             said.context.named = True
             return ordinal.end()
+        if _PLURAL.match(said.simple, end) and (said.letters or _MODEL.fullmatch(digits)):
+            words = cardinal(digits)
+            said.say(" ".join([*words[:-1], _plural(words[-1])]), place)
+            said.context.after = ""
+            return end + 1
         if is_start and not said.context.mark and len(digits) <= 2 and 1 <= int(digits) <= 31:
             said.say_tail(" ".join(cardinal(digits)), place)
             said.context.day = int(digits)
@@ -167,12 +180,7 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
 
 
 def _behind(said: Said, end: int) -> int:
-    """What may follow a number: another one up to which it reaches, or by which it is multiplied; halves."""
-    halves = {signs.HALF: "half", signs.QUARTER: "quarter", signs.QUARTERS: "three quarters"}.get(said.at(end))
-    if halves:
-        said.say("and" + (" a" if halves[0] != "t" else "") + " " + halves, end)
-        said.context.after, said.context.tail = "number", 0
-        return end + 1
+    """What may follow a number: another one up to which it reaches, or by which it is multiplied."""
     if said.at(end) in ("x", signs.TIMES) and said.at(end + 1).isdigit():
         said.say("by", end)
         return end + 1
@@ -181,7 +189,7 @@ def _behind(said: Said, end: int) -> int:
 
 def is_range(said: Said, end: int) -> bool:
     """Whether a number that ends here reaches up to another one."""
-    return said.at(end) in ("-", ":", signs.DASH) and (said.at(end + 1).isdigit() or is_sum(said, end + 1))
+    return said.at(end) in ("-", ":") and (said.at(end + 1).isdigit() or is_sum(said, end + 1))
 
 
 def read_range(said: Said, end: int) -> int:
@@ -267,8 +275,8 @@ def _read_share(said: Said, place: int, is_counted: bool) -> Optional[int]:
     count, parts = int(found[1]), int(found[2])
     if is_counted:
         said.say("and", place)
-    said.say("a" if is_counted and (count, parts) == (1, 2) else " ".join(cardinal(found[1])), place)
     name = {2: "half", 4: "quarter"}.get(parts)
+    said.say("a" if is_counted and name and count == 1 else " ".join(cardinal(found[1])), place)
     if name:
         said.say(name + "s" * (count > 1), place)
     else:
@@ -292,7 +300,7 @@ def _read_decade(said: Said, place: int, _: bool) -> Optional[int]:
     words = _year(found[1]) if len(found[1]) == 4 else cardinal(found[1])
     said.say(" ".join([*words[:-1], _plural(words[-1])]), place)
     said.context.after = ""
-    return found.end()
+    return read_range(said, found.end())
 
 
 def _is_coded(digits: str) -> bool:

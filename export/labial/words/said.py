@@ -23,11 +23,12 @@ _PLURALS = {"h": "aitches", "s": "esses", "x": "exes"}
 class Context:
     """What the words so far mean for the next one: all as at the beginning of a text."""
 
-    #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "no" or "nos", "with",
-    #: "street" or "drive".
+    #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "with", "street", "drive", "avenue"
+    #: or "lane"; "no" or "date", of which what follows may make the word `short`; "day"; "place", which is numbered.
     after: str = ""
     currency: int = 0  #: of a sum
     day: int = 0  #: the number that `tail` says, which a month makes an ordinal
+    short: str = ""  #: what a number or a date makes of the word before
     mark: str = ""  #: of the unit before, behind which a smaller one may follow
     tail: int = 0  #: phonemes that the next word may take back: "dollars" before "million", "five" before "March"
     is_old: bool = False  #: these are of an earlier text
@@ -45,6 +46,7 @@ class Said:
         self.tables, self.characters, self.context = tables, characters, context
         self.simple = "".join(item.plain for item in characters)
         self.phonemes: List[Tuple[int, int, bool]] = []
+        self.letters = False  #: letters stand in this word, behind them a hyphen or a number at most
         self.foreign = False  #: there was a letter of another script
 
     def at(self, place: int) -> str:
@@ -91,6 +93,11 @@ class Said:
         elif context.tail:
             del self.phonemes[-context.tail :]
         context.tail = 0
+
+    def correct(self, place: int) -> None:
+        """Says in full what was said in short."""
+        self.take_back()
+        self.say(self.context.short, place)
 
 
 def inflected(entry: str, plural: bool) -> str:

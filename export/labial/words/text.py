@@ -22,15 +22,15 @@ CHARACTERS, PHONEMES = 255, 96
 _DIRECTION = 8
 
 _SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times",
-          signs.DIVIDED: "divided by", signs.SQUARE: "squared"}
-_PARTS = {signs.HALF: "one half", signs.QUARTER: "one quarter", signs.QUARTERS: "three quarters"}
+          signs.DIVIDED: "divided by", signs.SQUARE: "squared", signs.CUBE: "cubed"}
+_POWERS = {signs.SQUARE: "square ", signs.CUBE: "cubic "}
 #: Abbreviations, and words that the trees would misread, with what is said, or - if they are read letter by letter.
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
 prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
-blvd boulevard;ave avenue;rd road;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
+blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
 wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
-mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume;ii two
-iii three;vii seven;viii eight;xii twelve;xiv fourteen;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please
+mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
+facade fah sod;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please
 thx thanks;nato nay toe;uber oober;xbox ex box;gmail gee mail;youtube you tube;android an droid;nvidia en vidia
 mysql my sequel;nginx engine ex;kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may
 bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control
@@ -38,14 +38,22 @@ airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;ab
 uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
-#: What they mean behind a name, unless another one follows; and words that are no names, at a sentence's beginning.
-_STREETS = {"St": "street", "Dr": "drive"}
+#: What they mean behind a name; the first two unless another one follows; and words that are no names, at a sentence's
+#: beginning.
+_STREETS = {"st": "street", "dr": "drive", "ave": "avenue", "ln": "lane"}
 _SAINTS = {"street": "saint", "drive": "doctor"}
 _NO_NAMES = frozenset("""the my our your his her their he she it they we this that there what when where if in on at
-    to from by near and but so for with is are no yes hi hello thanks dear ask call see st dr""".split())
-_DATES = dict(zip("Jan Feb Mar Apr Jun Jul Aug Sep Sept Oct Nov Dec Mon Tue Tues Wed Thu Thur Thurs Fri".split(),
-                  "January February March April June July August September September October November December Monday "
-                  "Tuesday Tuesday Wednesday Thursday Thursday Thursday Friday".lower().split()))
+    to from by near and but so for with is are no yes hi hello thanks dear ask call see st dr then you you'll
+    turn go take walk continue keep follow after cross please now head look visit apt suite""".split())
+#: Short names of months and days that are words otherwise; those with a point behind them are none, but the last two.
+_DOUBTFUL = "Jan Mar Mon Sat Sun".split()
+#: Words in short with a point, of which a number makes others, and such that mean others.
+_NUMBERED = {"no": "number", "nos": "numbers", "ca": "circa"}
+_SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "representative", "rev": "reverend",
+           "ft": "fort", "apt": "apartment", "fig": "figure"}  # fmt: skip
+#: What is numbered: a letter that stands at such a number is no unit.
+_PLACES = frozenset("""seat seats row gate gates room apartment apt flat suite unit bus exit hall platform section track
+    terminal locker fig figure chapter part""".split())
 _SCALES = "hundred thousand million billion trillion".split()
 
 #: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
@@ -71,7 +79,8 @@ _SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NE
     USPS NYSE IMHO AFAIK MOU SME STI TWA CLI COD DOB GIS VOD LIDL NES CIS UTEP HBCU ICAO""".split())
 _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR OX SO TO UP WE YO HA AH UH UM EH
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
-    ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA""".split())
+    ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA AMY AVA BYE EVA IAN MIA LYNX MYTH NYMPH
+    QUEUE""".split())
 #: Small letters without a vowel that are not read one by one: sounds and parts of words.
 _SOUNDS = frozenset("""hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th
     nd""".split())
@@ -84,13 +93,13 @@ _CODAS = frozenset("""B C D F G H K L M N P R S T W X Z BB BT CH CK CT DD FF FT 
     NG NK NN NT ND PH PT RB RC RD RF RK RL RM RN RP RT SH SK SM SP SS ST TH TT WD WL WN XT DTH FTH GHT LDT LTH NCH NTH
     PTH RCH RLD RNT RSH RST RTH TCH XTH DST HN PP RR SC""".split())
 _PAIRS = frozenset("""AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE
-    IOU""".split())
+    IOU AYO YA""".split())
 _LAST_PAIRS = frozenset("AY EA EE EY IE OE OO OU OY UE UY".split())
 
 #: Stage directions: the beginnings of verbs, behind which s, es or ing stands, and words that stand alone.
-_VERBS = """applaud beam blink blush breath burp chuckl clap clear cough cr cri exhal frown gasp giggl glanc grin groan
-    gulp hum inhal laugh mumbl mutter nod nodd paus pout scream shout shrug sigh sing smil smirk snap snapp snicker
-    sniff snort sob sobb swallow wav whisper whistl wink yawn yell""".split()
+_VERBS = """applaud beam blink blush breath burp chuckl clap clapp clear cough cri cry exhal frown gasp giggl
+    glanc grin grinn groan gulp hum humm inhal laugh mumbl mutter nod nodd paus pout scream shout shrug shrugg sigh sing
+    smil smirk snap snapp snicker sniff snort sob sobb swallow wav whisper whistl wink yawn yell""".split()
 _ALONE = frozenset("""applause beat blush breath chuckle clap cough cry gasp giggle grin groan gulp hum
     laugh laughter mumble music mutter nod pause quietly scream shout shrug sigh silence smile smirk sniff snort sob
     softly whisper whistle wink yawn yell""".split())
@@ -101,6 +110,8 @@ _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours the
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_ROMAN = re.compile("(X{0,2})(I{1,3}|IV|VI{0,3}|IX)")
+_ONES = "I II III IV V VI VII VIII IX".split()
 
 
 class Reading(NamedTuple):
@@ -153,7 +164,7 @@ class _Reader:
 
     def end_word(self) -> None:
         """A blank, or the end of the text."""
-        self.address = False
+        self.address = self.said.letters = False
         if self.context.closing:
             self.context.left -= 1
             if not self.context.left:
@@ -200,8 +211,12 @@ class _Reader:
             return self._open("]" if here == "[" else ">", place)
         if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
             return self._open(")" if here == "(" else "*", place)
+        if self.context.after in ("date", "day", "place") and here in ",-/" and before != BLANK and not self.address:
+            self.context.named = False
+            return place + 1
         after = self._forget()
         self.context.tail, self.context.named = 0, False
+        said.letters &= here == "-"
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
             return self._read_degrees(place, after)
@@ -213,9 +228,6 @@ class _Reader:
             self.context.after = "per"
         elif here in (".", "/", "-", "_", ":"):
             return self._read_joint(place, here, before, follows)
-        elif here in (signs.HALF, signs.QUARTER, signs.QUARTERS):
-            said.say(_PARTS[here], place)
-            self.context.after = "number"
         elif here == signs.MINUS:
             said.say("minus", place)
         elif here == signs.CENT and is_counted:
@@ -230,7 +242,7 @@ class _Reader:
             said.say("less than", place)
         elif here in _SIGNS:
             said.say(_SIGNS[here], place)
-        return place + 1
+        return numbers.read_range(said, place + 1) if here == "%" else place + 1
 
     def _read_degrees(self, place: int, after: str) -> int:
         self.said.say("degree" if after == "one" else "degrees", place)
@@ -274,13 +286,14 @@ class _Reader:
         run = _CAMEL.split(found[0])[0][:LONGEST]
         while run.endswith("'"):
             run = run[:-1]
-        self._read_run(run, place, after, before, named)
-        place += len(run)
+        self.said.letters = True
+        end = place + len(run)
+        is_pointed = self._read_run(run, place, after, before, named)
         if self.context.after == "with":
-            return place + 1
+            return end + 1
         if run.lower() in ("am", "pm") and after in ("one", "number", "time"):
-            return numbers.read_range(self.said, place)
-        return place + ((run in (*_DATES, "No", "Nos") or self.context.after in _SAINTS) and self.said.at(place) == ".")
+            return numbers.read_range(self.said, end)
+        return end + (is_pointed and self.said.at(end) == ".")
 
     def _read_pointed(self, text: str, place: int, after: str) -> int:
         meaning = {"e.g": "for example", "i.e": "that is"}.get(text[:3].lower())
@@ -299,7 +312,7 @@ class _Reader:
         if not found or unit not in _UNITS or (is_apart and unit in _ATTACHED and context.mark != "f"):
             return 0
         name = "minute_" if context.mark == "h" and unit == "m" else _UNITS[unit]
-        power = {signs.SQUARE: "square "}.get(self.said.at(found.end()), "")
+        power = _POWERS.get(self.said.at(found.end()), "")
         self.said.say(power + inflected(name, after == "number"), place)
         context.after = "unit" if unit not in ("M", "bn", "sq") else "number"
         context.tail, context.mark = 0, _PARTED.get(name, "")
@@ -308,7 +321,8 @@ class _Reader:
             return end + 1
         return numbers.read_range(self.said, end)
 
-    def _read_run(self, run: str, place: int, after: str, before: str, named: bool) -> None:
+    def _read_run(self, run: str, place: int, after: str, before: str, named: bool) -> bool:
+        """Reads letters that belong together; returns whether a point behind them belongs to them."""
         said, context, small = self.said, self.context, run.lower()
         follows = said.at(place + len(run))
         shouting, context.shouting = context.shouting, False
@@ -316,9 +330,16 @@ class _Reader:
         if context.named and after in _SAINTS:
             said.take_back()
             said.say(_SAINTS[after], place)
-        if named and run in _STREETS:
-            said.say_tail(_STREETS[run], place)
-            context.after = _STREETS[run]
+        if after == "place" and (len(run) == 1 or small in ("and", "or", "to")):
+            context.after = "place"
+        date = _date_of(run)
+        number = _roman(run, named or after == "place")
+        if number:
+            said.say(" ".join(numbers.cardinal(str(number))), place)
+        elif named and small in _STREETS:
+            said.say_tail(_STREETS[small], place)
+            context.after = _STREETS[small]
+            return True
         elif small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
             said.take_back() if after == "time" else None
             said.say_names(small, range(place, place + 2), False)
@@ -328,19 +349,25 @@ class _Reader:
         elif small in _SCALES and after == "sum":
             said.take_back()
             said.say(f"{small} {inflected(numbers.CURRENCIES[context.currency], True)}", place)
-        elif run in _DATES:
-            month = self._month(place, after) if list(_DATES).index(run) < 12 else ""
-            said.say(_DATES[run], place)
-            context.after = month
-        elif run in ("No", "Nos") and follows == ".":
-            before_it = len(said.phonemes)
-            self._spell(run, place)
-            context.after, context.tail, context.is_old = small, len(said.phonemes) - before_it, False
+        elif date:
+            self._read_date(run, date, place, after, follows == ".")
+            return run != date
+        elif follows == "." and small in _NUMBERED and run in (small, small.title()) and not self.address:
+            self._spell_tail(run, place)
+            context.after, context.short = "no", _NUMBERED[small]
+            return True
+        elif follows == "." and small in _SHORTS and run != small and not self.address:
+            said.say(_SHORTS[small], place)
+            context.after = "place" if small in _PLACES else context.after
+            return True
         elif run == "w" and follows == "/":
             said.say("with", place)
             context.after = "with"
         elif small == "o" and after == "with":
             said.say("out", place)
+        elif small in _PLACES:
+            self._spell(run, place)
+            context.after, context.shouting = "place", run.isupper()
         elif small in _MEANINGS:
             if _MEANINGS[small] == "-":
                 said.say_names(small, range(place, place + len(small)), False)
@@ -352,9 +379,35 @@ class _Reader:
             letters = _owner(run) if run == small else _capitals(run)
             said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
         else:
-            context.after = self._month(place, after) if run in numbers.MONTHS else ""
             self._spell(run, place)
             context.shouting = run.isupper() and (len(run) > 1 or run == "I")
+        return False
+
+    def _read_date(self, run: str, name: str, place: int, after: str, is_pointed: bool) -> None:
+        """Reads a month or a day, whose name the run is or begins.
+
+        Names that are words otherwise are dates behind the number of a day, next to another date and, but for Sat and
+        Sun, with a point; if none of this holds, what follows may correct them.
+        """
+        context = self.context
+        if after == "date":
+            self.said.correct(place)
+        is_sure = (run[:3] not in _DOUBTFUL or after in ("date", "day")
+                   or (is_pointed and run[:3] not in _DOUBTFUL[-2:]))
+        context.after = self._month(place, after) if name in numbers.MONTHS else "day"
+        if run == name:
+            self._spell(run, place)
+        elif is_sure or not context.after:
+            self.said.say(name.lower(), place)
+        else:
+            self._spell_tail(run, place)
+            context.after, context.short = "date", name.lower()
+
+    def _spell_tail(self, run: str, place: int) -> None:
+        """Spells a word that the next one may take back."""
+        before = len(self.said.phonemes)
+        self._spell(run, place)
+        self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
 
     def _month(self, place: int, after: str) -> str:
         """What a month leaves behind: it makes the number before it an ordinal, or waits for its day."""
@@ -376,7 +429,7 @@ class _Reader:
     def _is_spelt(self, run: str, before: str, follows: str, shouting: bool) -> bool:
         """Whether letters are read one by one."""
         if len(run) == 1:
-            return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+]", before)) or follows != BLANK))
+            return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+/]", before)) or follows != BLANK))
         if run.islower():
             return _is_spelt_small(_owner(run))
         letters = _capitals(run)
@@ -387,6 +440,26 @@ class _Reader:
         if letters in _SHOUTED:
             return not shouting
         return letters in _SPELT or not (letters in _WORDS or is_pronounceable(letters))
+
+
+def _date_of(run: str) -> str:
+    """The month or day whose name a run is or begins: with three letters, or up to five from s on; or nothing."""
+    if run == run.title() and len(run) > 2:
+        for name in (*numbers.MONTHS, *numbers.DAYS):
+            if run == name or (name.startswith(run) and len(run) <= (5 if name[0] >= "S" else 3)):
+                return name
+    return ""
+
+
+def _roman(run: str, is_named: bool) -> int:
+    """The number of Roman numerals up to 29, or 0.
+
+    They are three letters or more, II, or two capitals behind a name or what is numbered.
+    """
+    found = _ROMAN.fullmatch(run.upper())
+    if not found or len(run) < 2 or (len(run) == 2 and found[2] != "II" and not (is_named and run.isupper())):
+        return 0
+    return 10 * len(found[1]) + _ONES.index(found[2]) + 1
 
 
 def _owner(run: str) -> str:
