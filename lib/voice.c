@@ -266,8 +266,10 @@ int labial_voice_done(labial_voice_t *voice)
         if (end > latest)
             latest = end;
     }
+    if (voice->step != voice->steps)
+        return 0;
     if (places == 0u)
-        return (voice->finished || voice->cancelled) && voice->step == voice->steps;
+        return voice->finished || voice->cancelled;
     latest += voice->offset + (int64_t)LABIAL_VOICE_REST;
     return voice->finished && (int64_t)voice->next * 1000 >= latest * voice->model->frames_per_second;
 }

@@ -103,11 +103,12 @@ static const char *known(void)
     return said;
 }
 
+/* Plays every frame up to a time. */
 static void play(uint64_t until)
 {
     int16_t faps[LABIAL_CHANNELS];
-    while (labial_voice_next(&voice, until, NULL, faps) == LABIAL_OK)
-        continue;
+    for (uint64_t heard = 20u * (uint64_t)voice.next; heard <= until; heard += 20)
+        assert_int_equal(labial_voice_next(&voice, heard, NULL, faps), LABIAL_OK);
 }
 
 /* ---- Phonemes and visemes ---------------------------------------------------------------------------------------- */
@@ -457,6 +458,13 @@ TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
     assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
     tell_one("S", 100, 200);
     assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S");
+    message.utterance = name("a");
+    tell_one("F", 200, 300);
+    assert_int_equal(labial_voice_begin(&voice, 6000, 0), LABIAL_OK); /* what has a name is moved by it alone */
+    message.utterance = 0;
+    tell_one("M", 0, 500);
+    assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
+                                 "5200-5300 F, 6000-6500 M");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)
@@ -1120,6 +1128,22 @@ TEST_AFTER(begin_frames, done)
     show_until(1760); /* the last one ends at 1300 */
     assert_int_equal(labial_voice_done(&voice), 0);
     show_until(1780);
+    assert_int_equal(labial_voice_done(&voice), 1);
+}
+
+/* Pictures that were not drawn for seconds, as those of a hidden page: the face comes to rest before all is done. */
+TEST_AFTER(begin_frames, done_after_a_jump_is_at_rest)
+{
+    int16_t faps[LABIAL_CHANNELS];
+    tell_sentence(0, SENTENCE);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    show_until(500);
+    assert_int_equal(labial_voice_next(&voice, 5000, NULL, faps), LABIAL_OK);
+    assert_memory_not_equal(faps, rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    for (uint64_t heard = 5020; heard <= 5200; heard += 20)
+        assert_int_equal(labial_voice_next(&voice, heard, NULL, faps), LABIAL_OK);
+    assert_memory_equal(faps, rest, sizeof rest);
     assert_int_equal(labial_voice_done(&voice), 1);
 }
 

@@ -209,14 +209,14 @@ def test_done() -> None:
     with labial.Voice() as voice:
         for word in WORDS:
             voice.say(*word)
-        voice.played(5.0)
+        played(voice, 0, 5.0)
         assert not voice.done
         voice.finish()
         assert voice.done
         voice.say("More.", 0, 1)  # the next utterance, from now on
         assert not voice.done and voice.time == 5.02
         voice.finish()
-        voice.played(6.48)
+        played(voice, 5.02, 6.48)
         assert not voice.done
         voice.played(6.5)
         assert voice.done
