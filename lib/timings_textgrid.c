@@ -37,10 +37,11 @@ enum { SKIPPED, WANTED, POINTS };
 
 /* ---- Tiers ----------------------------------------------------------------------------------------------------- */
 
-/* Whether a tier's name, behind the last " - " and without the blanks around it, is one of phonemes in any case. */
+/* Whether a tier's name, behind the last " - " and without the blanks around it, is one of phonemes in any case;
+ * WebMAUS's is MAU. */
 static int is_phoneme_tier(const char *name)
 {
-    static const char *const known[] = { "phones", "phonemes", "phone", "phoneme" };
+    static const char *const known[] = { "phones", "phonemes", "segments", "phone", "phoneme", "segment", "mau" };
     char word[9]; /* as long as the longest */
     const char *c;
     uint32_t length = 0, i;

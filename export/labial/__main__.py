@@ -18,7 +18,7 @@ from typing import Iterator, List, Optional, Sequence
 from labial import __version__
 from labial.commands import COMMANDS
 from labial.errors import LabialError, did_you_mean, needs
-from labial.program import Parser, complain, drop_output
+from labial.program import Parser, check_output, complain, drop_output
 
 
 def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
@@ -73,6 +73,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     if not given[0].startswith("-") and given[0] not in COMMANDS:
         top.error(f"{given[0]!r} is no command: {did_you_mean(given[0], COMMANDS)}")
     options = top.parse_args(given)
+    check_output()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="surrogateescape")  # file names are written unchanged
     with warnings.catch_warnings():

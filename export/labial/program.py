@@ -4,11 +4,12 @@ error and a status other than 0, never a traceback."""
 from __future__ import annotations
 
 import argparse
+import io
 import math
 import os
 import sys
 from contextlib import suppress
-from typing import Callable, NoReturn
+from typing import Callable, NoReturn, TextIO, cast
 
 from labial.errors import LabialError
 
@@ -48,9 +49,22 @@ def _reader(convert: Callable[[str], float], what: str, least: float, most: floa
     return read
 
 
+class _Closed(io.TextIOBase):
+    """Standard output that the program was started without."""
+
+    def write(self, text: str) -> int:
+        raise LabialError("standard output is closed")
+
+
+def check_output() -> None:
+    """Makes it an error to write to standard output where it is closed; Python has None there."""
+    sys.stdout = sys.stdout or cast(TextIO, _Closed())
+
+
 def run(name: str, main: Callable[[], int]) -> int:
     """The exit status of a program: what `main` returns, 1 after a line about a LabialError or an OSError, or quietly
     where the reader of its output has gone, 130 after Ctrl-C."""
+    check_output()
     try:
         status = main()
         sys.stdout.flush()

@@ -14,8 +14,8 @@
  *             start with # are comments, and one of them comes first.
  *   phseg     CMU Sphinx: the header `SFrm EFrm SegAScr Phone`, rows of that, frames of 10 ms, `Total score: ...`.
  *   textgrid  Praat's TextGrid, long or short, as of the Montreal Forced Aligner. The tier is the one asked for; else
- *             the first called phones, phonemes, phone or phoneme in any case, also after `speaker - `; else the first
- *             interval tier.
+ *             the first called phones, phonemes, segments, one of these without s, or MAU (WebMAUS's), in any case,
+ *             also after `speaker - `; else the first interval tier.
  *
  * Laughs are written in two ways. `<laugh SECONDS [INTENSITY]>` on a line of its own, or between flite's phonemes,
  * laughs there and makes all that follows later (not in phseg and textgrid, which are files of aligners). The label

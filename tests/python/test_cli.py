@@ -78,6 +78,20 @@ def test_synth_articulates(given: Path, capsys: pytest.CaptureFixture) -> None:
     assert "'201' is not a whole number within 0 .. 200" in capsys.readouterr().err
 
 
+def test_a_closed_output_is_an_error(
+    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Catches a command that fails as if by a defect, or passes although nobody gets its output."""
+    phones = str(given / "phones.lab")
+    for command in (["timings", phones], ["synth", str(given / "model.npz"), phones],
+                    ["export", str(given / "model.npz"), "--name", "m", "-o", str(given)]):
+        monkeypatch.setattr(sys, "stdout", None)
+        assert main(command) == 1
+        assert capsys.readouterr().err.splitlines()[-1] == "labial: standard output is closed"
+    monkeypatch.setattr(sys, "stdout", None)
+    assert main(["timings", phones, "-o", str(given / "a.lab")]) == 0 and run("p", lambda: 0) == 0
+
+
 def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture) -> None:
     """The files are there and the tables name what was measured."""
     assert main(["export", str(given / "model.npz"), "--name", "my_model", "-o", str(given / "out"), "--blob"]) == 0

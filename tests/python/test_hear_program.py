@@ -119,6 +119,8 @@ def test_raw_samples_from_standard_input() -> None:
     assert motion(hear("-", "--channels", "2", data=pcm(stereo) + b"\x55\x55\x55")) == wanted(stereo)
     assert motion(hear("--rate=48000", "-", data=pcm(SOUND))) == wanted(SOUND, 48000)
     assert motion(hear("-")) == []
+    for samples in (SOUND[:2], SOUND[:6], SOUND[:7]):  # up to as many bytes as tell a WAV file, and one sample more
+        assert motion(hear("-", data=pcm(samples))) == wanted(samples)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -224,6 +226,7 @@ def test_unusual_files_are_heard(data: bytes, tmp_path: Path) -> None:
     come through a pipe, which cannot seek."""
     (tmp_path / "a.wav").write_bytes(data)
     assert motion(hear(str(tmp_path / "a.wav"))) == wanted(SOUND, file=True)
+    assert motion(hear("-", data=data)) == wanted(SOUND)
     if os.path.exists("/dev/stdin"):
         assert motion(hear("/dev/stdin", data=data)) == wanted(SOUND)
 

@@ -47,6 +47,13 @@ def test_what_is_longer_goes_on_alone() -> None:
     assert labial.with_sound(np.array(one), np.array(one)) == labial.with_sound(one, one)
 
 
+def test_frames_are_mixed_as_their_faps() -> None:
+    """Catches frames of a stream or of hearing that only their FAPs could stand for."""
+    spoken, heard = [pose(400, 10), pose(60, 10)], [pose(200, 31), pose(200, 31)]
+    frames = [[labial.Frame(k, tuple(map(int, row))) for k, row in enumerate(rows)] for rows in (spoken, heard)]
+    assert labial.with_sound(*frames) == labial.with_sound(spoken, heard)
+
+
 @pytest.mark.parametrize("arguments, message", [
     (([pose(1)], [pose(1)], 1.5), "a share of 1.5 is not within 0 .. 1"),
     (([pose(1)[1:]], [pose(1)]), "a frame has 12 numbers, not 13"),

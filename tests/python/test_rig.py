@@ -21,6 +21,7 @@ from labial.rig import table
 from labial.rig.description import read
 from labial.rig.gestures import SOURCES
 from labial.rig.table import FAP_MAX, convert, expected
+from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
 from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
@@ -304,7 +305,10 @@ def test_a_stream_looks_ahead(tmp_path: Path) -> None:
     face = Rig(tmp_path / "face.toml")
     assert [values["jaw"] for values in face.ahead(frames.tolist(), 8)] == expected and max(expected) > 1600
     face.rest()
-    assert [values["jaw"] for values in face.ahead(iter(frames.tolist()), 8)] == expected
+    stream = (Frame(k, tuple(row)) for k, row in enumerate(frames.tolist()))
+    assert [values["jaw"] for values in face.ahead(stream, 8)] == expected
+    arkit, frame = Rig("arkit"), Frame(0, tuple(frames[10].tolist()))
+    assert arkit.apply(frame) == arkit.apply(frame.faps)
     with pytest.raises(LabialError, match="looks 0 to 65,534 frames ahead, not -1"):
         next(face.ahead(frames.tolist(), -1))
 
@@ -369,7 +373,7 @@ def test_without_matplotlib_the_way_out_is_named(
 
 
 GAIN = JAW.replace("full = 1900", "gain = 1\nminimum = 1000\nmaximum = 2000")
-PLAIN = 'unit = "plain"\n'
+PLAIN, WEIGHT = 'unit = "plain"\n', 'unit = "weight"\n'
 #: Python refuses whole numbers of thousands of digits since its releases of September 2022.
 TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
 
@@ -378,6 +382,7 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
     ("text", "message"),
     [
         ("", "output: at least one table [output.NAME] is needed"),
+        ("\ufeff" + JAW, None),
         ("output = 3", "output: at least one table"),
         ("[output]", "output: at least one table"),
         ("[output]\njaw = 3", "output.jaw: is not a table"),
@@ -415,7 +420,12 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace('"opening"', '"fap16"'), "output.jaw.reach: is missing"),
         (JAW + "closed = 1399\n", None),
         (GAIN + "closed = 900\n", "output.jaw.closed: 900 is not within 1000 .. 2000"),
-        (JAW + "closed = 90\n", "output.jaw.minimum: 90 is not a servo's pulse"),
+        (JAW + "closed = 90\n", "output.jaw.closed: 90 is not a servo's pulse"),
+        (JAW.replace("neutral", "closed").replace("1400", "90"), "output.jaw.closed: 90 is not a servo's pulse"),
+        (JAW.replace("neutral", "closed").replace("1900", "1400"), "output.jaw.full: is the same as closed"),
+        (JAW.replace("neutral", "closed") + "curve = [[1500, 0], [1900, 9]]\n", "jaw.curve: closed, 1400, is not"),
+        (WEIGHT + JAW.replace("1400", "0").replace("1900", "100"), "jaw.full: 100 is beyond 1: weights are 0 to 1"),
+        (WEIGHT + JAW.replace("1400", "0").replace("1900", "1"), None),
         (JAW + "deadband = -1\n", "output.jaw.deadband: -1 is negative"),
         (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
         (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
@@ -425,7 +435,7 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace("1400", "9" * 400), "output.jaw.neutral: inf is not a finite number"),
         (JAW.replace("1400", "9" * 5000), "output.jaw.neutral: inf" if TAKES_ANY_NUMBER else ": not TOML: "),
         (JAW.replace("1400", "150"), "output.jaw.neutral: 150 is not a servo's pulse, 400 .. 2600 microseconds"),
-        (JAW.replace("1900", "19000"), "output.jaw.maximum: 19000 is not a servo's pulse"),
+        (JAW.replace("1900", "19000"), "output.jaw.full: 19000 is not a servo's pulse"),
         (JAW.replace("1900", "1400"), "output.jaw.full: is the same as neutral"),
         (JAW.replace("full = 1900\n", ""), "output.jaw.full: either full (the value at full extent) or gain"),
         (JAW + "gain = 2\n", "FAP unit) is needed, not both"),
@@ -478,7 +488,7 @@ def test_errors_name_file_and_key(
 ) -> None:
     """One line, no traceback, nothing written; a case without message is one that must pass."""
     path = tmp_path / "face.toml"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     status = main(["rig", str(path), "-o", str(tmp_path / "out"), "--no-figure"])
     error = capsys.readouterr().err
     if message is None:

@@ -21,10 +21,10 @@ import pytest
 import labial
 from labial.__main__ import main
 from labial.errors import LabialError, StreamError
+from labial.files.frames import opening
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import HearingTables, quantise
-from labial.files.frames import opening
 from labial.runtime.hearing import models
 from labial.tables.visemes import VISEME_OF, VISEMES
 from packages import SOURCE
@@ -149,6 +149,8 @@ def test_the_level_is_known() -> None:
     sound = voice(1.0) // 64
     with labial.Hearing(model="hear_small") as hearing:
         assert hearing.level == 6656
+        data = sound.astype("<i2").tobytes()
+        assert hearing.measure(data + b"\x7f") == hearing.measure(data)  # bytes that end within a sample
         assert hearing.measure(sound) == hearing.level == measured(sound, 16000) // SCALE < 6000
         begin = hearing.level * SCALE
         frames = hearing.push(sound)
@@ -291,6 +293,27 @@ def test_the_command_reads_standard_input(monkeypatch: pytest.MonkeyPatch, capsy
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(stereo.astype("<i2").tobytes())))
     assert main(["hear", "-", "--rate", "48000", "--channels", "2"]) == 0
     assert rows(capsys.readouterr().out).tolist() == wanted(sound, 48000, "hear_host").faps.tolist()
+
+
+def test_the_command_reads_a_wav_from_a_pipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                             capsys: pytest.CaptureFixture) -> None:
+    """Catches a header that is heard as samples, its rate and channels that are passed over, bytes lost behind it."""
+    sound = voice(0.5, rate=48000)
+    stereo = np.stack([sound, sound], axis=1)
+    data = write_wav(tmp_path / "a.wav", stereo, 48000).read_bytes()
+    endless = data[:40] + struct.pack("<I", 0x7FFFF000) + data[44:]  # as programs write that do not know the size
+    for given in (data, endless.replace(data[4:8], struct.pack("<I", 0x7FFFF024), 1)):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(given)))
+        assert main(["hear", "-"]) == 0
+        assert rows(capsys.readouterr().out).tolist() == wanted(sound, 48000, "hear_host").faps.tolist()
+    other = write_wav(tmp_path / "b.wav", sound, 11025).read_bytes()
+    for given in (other, b"RF64" + data[4:], data[:30]):
+        monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(given)))
+        assert main(["hear", "-"]) == 1
+        assert capsys.readouterr().err == ("labial: standard input: a sound with a header must be a WAV file of 16 "
+                                           "bits, one or two channels and a usual rate\n")
+    monkeypatch.setattr(sys, "stdin", None)
+    assert main(["hear", "-"]) == 1 and capsys.readouterr().err == "labial: standard input is closed\n"
 
 
 def test_other_files_are_converted(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

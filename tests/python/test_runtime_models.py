@@ -24,7 +24,7 @@ from labial.__main__ import main
 from labial.errors import DataError, LabialError, ModelError, StreamError
 from labial.rig.animation import arkit
 from labial.tables.emit import blob
-from labial.tables.model import load
+from labial.tables.model import load, save
 from labial.tables.phones import read_stream
 from labial.tables.quantise import ExportedModel, quantise
 from models import random_model
@@ -81,6 +81,9 @@ def test_damaged_models_are_refused(voice: Path, tmp_path: Path) -> None:
             labial.Model(path)
     with pytest.raises(FileNotFoundError):
         labial.Model(tmp_path / "missing.lbm")
+    save(random_model(1), tmp_path / "me.npz")
+    with pytest.raises(ModelError, match="me.npz: a model that training wrote; labial export .* --blob"):
+        labial.Model(tmp_path / "me.npz")
     for other in (None, 3, b"x", ""):
         with pytest.raises(TypeError):
             labial.Model(other)  # type: ignore[arg-type]
@@ -155,7 +158,7 @@ def test_built_in_rigs() -> None:
 def test_what_is_no_rig(tmp_path: Path) -> None:
     path = tmp_path / "face.toml"
     path.write_text('[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 9000\n')
-    with pytest.raises(DataError, match="face.toml: output.jaw.maximum: 9000 is not a servo's pulse"):
+    with pytest.raises(DataError, match="face.toml: output.jaw.full: 9000 is not a servo's pulse"):
         labial.Rig(path)
     with pytest.raises(DataError, match="nothing.toml: No such file"):
         labial.Rig("nothing.toml")
@@ -191,6 +194,23 @@ def test_timings_from_anything_that_holds_them(tmp_path: Path) -> None:
             labial.read_timings(given)  # type: ignore[arg-type]
     with pytest.raises(DataError, match="^timings:2: "):
         labial.read_timings(io.StringIO("0 1 sil\n1 x m\n"))
+
+
+def test_laughs_are_kept_for_render(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """Catches a laugh that becomes silence where it can be rendered, and one model that drops it without a word."""
+    laugh, path = "<laugh:0.7>", tmp_path / "l.lab"
+    path.write_text(f"0 .2 m\n.2 2.2 {laugh}\n2.2 2.4 m\n2.4 14.4 <laugh>\n14.4 14.6 m\n")
+    expected = [("M", 200), (laugh, 2000), ("M", 200), ("<laugh>", 12000), ("M", 200)]
+    assert labial.read_timings(path) == expected
+    assert max(frame[0] for frame in labial.render(expected)[20:100]) > 100
+    for text, found in (("m:0.2 <laugh 1.8 0.7> m:0.4\n", "<laugh:0.699>"), (f"m:0.2 {laugh}:2.0 m:2.2\n", laugh)):
+        assert labial.read_timings(io.StringIO(text)) == [("M", 200), (found, 1800), ("M", 200)]
+    assert main(["timings", str(path)]) == 0
+    captured = capsys.readouterr()
+    assert captured.out.splitlines()[1] == f"0.2000 2.2000 {laugh}" and captured.err == ""
+    assert main(["synth", "speech_en", str(path), "-o", str(tmp_path / "a.csv")]) == 0
+    assert capsys.readouterr().err == (f"labial: warning: {path}:2: one model alone cannot laugh, so laughs are "
+                                       "silence; labial-say and labial.render() laugh\n")
 
 
 def chunks(name: str) -> list:

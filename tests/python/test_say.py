@@ -190,6 +190,17 @@ def test_times_of_another_unit_are_asked_about(text: str, line: int, seconds: in
         f"labial-say: warning: line {line}: 'b' lasts {seconds} s: is the unit of time right?\n" if line else "")
 
 
+@pytest.mark.parametrize(("text", "asked"), [
+    ("_ 90\nm .08\n", True), ("_ 90\nm 4\na 4.4\n", True), ("m 4\na 5\n", False), ("_ 4\n", False),
+    ("<laugh:1> 2\n", False),
+])  # fmt: skip
+def test_times_that_are_too_short_are_asked_about(text: str, asked: bool) -> None:
+    """Where every sound is; not of silences and laughs."""
+    done = say(text)
+    assert done.returncode == 0 and done.stderr.decode() == (
+        "labial-say: warning: every sound is shorter than 5 ms: is the unit of time right?\n" if asked else "")
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_damaged_files_are_motion_or_an_error(name: str) -> None:
     """Bytes that are no text, or hardly any, end in motion or an error with its line, not in a crash."""

@@ -289,7 +289,7 @@ def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     assert "times nothing here" in capsys.readouterr().err
 
 
-def test_times_are_moved_and_words_pronounced_otherwise(tmp_path: Path) -> None:
+def test_times_are_moved_and_words_pronounced_otherwise(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """An offset for every format, cut off at the beginning; own words, and other languages where espeak-ng is."""
     path = put(tmp_path, SAMPLES["words"].messages)
     plain = labial.read_timings(path)
@@ -305,6 +305,8 @@ def test_times_are_moved_and_words_pronounced_otherwise(tmp_path: Path) -> None:
     out = tmp_path / "a.lab"
     assert main(["timings", str(path), "--offset-ms", "50", "-o", str(out)]) == 0
     assert out.read_text().splitlines()[0].split() [1:] == ["0.0500", "SIL"]
+    assert main(["timings", str(path), "--offset-ms", "-5000"]) == 1
+    assert capsys.readouterr().err == f"labial: {path}: an offset of -5000 ms leaves no segments\n"
     if shutil.which("espeak-ng"):
         assert main(["timings", str(path), "--language", "de", "-o", str(out)]) == 0
         assert out.read_text().split()[-1] == "OW"

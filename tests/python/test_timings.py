@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+import os
 import random
 import re
+import threading
 import warnings
 from pathlib import Path
 from typing import List, Sequence, Tuple
 
 import pytest
 
+import labial
+from labial.__main__ import main
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import SPEECH
 from labial.corpus.timings import TOLERANCE, phoneme_segments
@@ -125,6 +129,50 @@ def test_times_of_another_unit_are_asked_about(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert len(phoneme_segments(path, read_timings(path), SPEECH)) == 2
+
+
+@pytest.mark.parametrize(("text", "told"), [
+    ("0 .09 sil\n.09 .0908 m\n.0908 .0928 b\n.0928 .3 aa\n", "every sound but the last"),
+    ("0 .003 m\n", "every sound"), ("0 .003 m\n.003 .009 b\n.009 .3 aa\n", ""), ("0 .003 sil\n", ""),
+])  # fmt: skip
+def test_times_that_are_too_short_are_asked_about(tmp_path: Path, text: str, told: str) -> None:
+    """Milliseconds that a reader takes for seconds, or ticks; the last one's length may be a guess."""
+    path = put(tmp_path, "a.lab", text)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        phonemes(path)
+    assert [str(one.message) for one in caught] == (
+        [f"{path}: {told} is shorter than 5 ms: is the unit of time right?"] if told else [])
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no named pipes")
+@pytest.mark.parametrize("name", ["a.lab", "a.txt", "a.json", "a.TextGrid"])
+def test_timings_come_from_a_pipe(tmp_path: Path, name: str) -> None:
+    """Catches a file that is opened twice: the second time a pipe is empty, or blocks."""
+    content = {".json": SAMPLES["plain"].text.encode(), ".TextGrid": FILES["aligned.TextGrid"]}.get(
+        Path(name).suffix, b"0 1 m\n")
+    (tmp_path / "file").mkdir()
+    (tmp_path / "file" / name).write_bytes(content)
+    pipe = tmp_path / name
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_bytes, args=(content,), daemon=True)
+    writer.start()
+    assert read_timings(pipe) == read_timings(tmp_path / "file" / name)
+    writer.join()
+
+
+def test_a_tier_is_taken_by_name(tmp_path: Path) -> None:
+    """Catches a tier that no command and no call can name."""
+    path, out = str(SEEDS / "aligned.TextGrid"), tmp_path / "a.lab"
+    words = read_timings(path, tier="words")
+    assert '"baby"' in {item.label for item in words} and words != read_timings(path)
+    assert labial.read_timings(path, tier="phones") == PHRASE
+    assert main(["timings", path, "--tier", "phones", "-o", str(out)]) == 0
+    assert [line.split()[2] for line in out.read_text().splitlines()] == [label for label, _ in PHRASE]
+    for command in (["timings", path], ["synth", "speech_en", path], ["check", "speech_en", path],
+                    ["page", "speech_en", "--phones", path, "-o", str(tmp_path / "a.html")],
+                    ["bake", path, "-o", str(tmp_path / "a.h")]):
+        assert main([*command, "--tier", "none"]) == 1, command
 
 
 PHRASE = [("SIL", 220), ("M", 70), ("AY", 150), ("B", 90), ("EY", 200), ("B", 80), ("IY", 90), ("SIL", 220)]

@@ -61,9 +61,9 @@ static const char usage_begin[] =
     "\n"
     "  SOUND.wav       PCM, floating point, A-law or mu-law; one or two channels; 8000, 12000, 16000, 22050, 24000,\n"
     "                  32000, 44100 or 48000 samples per second\n"
-    "  -               samples from standard input, 16 bits, low byte first\n"
-    "  --rate RATE     with -: samples per second (16000)\n"
-    "  --channels N    with -: 1, or 2, of which the mean is heard (1)\n"
+    "  -               standard input: a WAV file, or samples of 16 bits without a header, low byte first\n"
+    "  --rate RATE     of samples without a header: how many a second (16000)\n"
+    "  --channels N    of samples without a header: 1, or 2, of which the mean is heard (1)\n"
     "  --exact         exactly the frames of the sound: the face does not come to rest after the last one\n"
     "  --classes       not motion but a .lab file: the phonemes that stand for the lip shapes heard, with their "
     "times\n";
@@ -293,9 +293,9 @@ static int open_and_run(hear_t *hear, const options_t *options)
     hear->sound = options->sound;
     if (strcmp(options->sound, "-") == 0) {
         hear->sound = "standard input";
-        wav_raw(&hear->wav, stdin, options->rate ? options->rate : DEFAULT_RATE,
-                options->channels ? options->channels : 1u);
-        return run(hear, options);
+        const int opened = wav_open_or_raw(&hear->wav, stdin, options->rate ? options->rate : DEFAULT_RATE,
+                                           options->channels ? options->channels : 1u);
+        return opened == 0 ? run(hear, options) : failed(hear, hear->wav.message);
     }
     FILE *in = fopen(options->sound, "rb");
     if (!in)

@@ -164,15 +164,20 @@ static int read_format(wav_t *wav, uint32_t size)
     return skip(wav, size - taken) == 0 && skip(wav, size & 1u) == 0 ? 0 : -1;
 }
 
-int wav_open(wav_t *wav, FILE *in)
+/* Reads the first bytes. Returns whether they are those of a WAV file. */
+static int read_head(wav_t *wav, FILE *in)
 {
-    unsigned char head[12];
     memset(wav, 0, sizeof *wav);
     wav->in = in;
-    if (read_all(wav, head, 12, "is not a WAV file") != 0)
-        return -1;
-    if (memcmp(head, "RIFF", 4) != 0 || memcmp(head + 8, "WAVE", 4) != 0)
-        return failed(wav, "is not a WAV file");
+    wav->last = (unsigned)fread(wav->head, 1, WAV_HEAD, in);
+    return wav->last == WAV_HEAD && memcmp(wav->head, "RIFF", 4) == 0 && memcmp(wav->head + 8, "WAVE", 4) == 0;
+}
+
+/* Reads the chunks behind the first bytes. */
+static int read_chunks(wav_t *wav)
+{
+    unsigned char head[8];
+    wav->last = 0;
     for (;;) {
         if (read_all(wav, head, 8, "ends before its samples") != 0)
             return -1;
@@ -191,15 +196,30 @@ int wav_open(wav_t *wav, FILE *in)
     }
 }
 
-void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
+int wav_open(wav_t *wav, FILE *in)
 {
-    memset(wav, 0, sizeof *wav);
-    wav->in = in;
+    return read_head(wav, in) ? read_chunks(wav) : failed(wav, "is not a WAV file");
+}
+
+int wav_open_or_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
+{
+    if (read_head(wav, in))
+        return read_chunks(wav);
     wav->rate = rate;
     wav->channels = channels;
     wav->bytes = 2;
     wav->sample = of_16_bits;
     wav->endless = 1;
+    return 0;
+}
+
+/* Reads bytes of samples, beginning with those that were kept. */
+static size_t read_bytes(wav_t *wav, unsigned char *bytes, size_t count)
+{
+    const size_t left = wav->last - wav->first, kept = count < left ? count : left;
+    memcpy(bytes, wav->head + wav->first, kept);
+    wav->first += (unsigned)kept;
+    return kept + fread(bytes + kept, 1, count - kept, wav->in);
 }
 
 long wav_read(wav_t *wav, int16_t *samples, size_t count)
@@ -212,7 +232,7 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
         size_t wanted = (count - read) * size < sizeof bytes ? (count - read) * size : sizeof bytes;
         if (!wav->endless && wanted > wav->left)
             wanted = wav->left;
-        const size_t got = fread(bytes, 1, wanted, wav->in);
+        const size_t got = read_bytes(wav, bytes, wanted);
         if (got < wanted && (!wav->endless || ferror(wav->in)))
             return failed(wav, "ends before its samples do");
         if (!wav->endless)

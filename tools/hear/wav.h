@@ -14,13 +14,18 @@
 /* A sample of a file as 16 bits; `wrong` is set where it is no number. */
 typedef int16_t (*wav_sample_fn)(const unsigned char *at, int *wrong);
 
+/* Bytes that tell a WAV file. */
+#define WAV_HEAD 12u
+
 /* Read `rate`, `channels` and `message`; the rest is private. */
 typedef struct {
     uint32_t rate;     /* samples per second, as the file says */
     unsigned channels; /* likewise */
     char message[128]; /* of the latest error */
     FILE *in;
-    unsigned bytes; /* of a sample of one channel */
+    unsigned char head[WAV_HEAD]; /* the first bytes; those of samples without a header are the first samples */
+    unsigned first, last;         /* which of them are still to be read: from `first` on, before `last` */
+    unsigned bytes;               /* of a sample of one channel */
     wav_sample_fn sample;
     uint32_t left; /* bytes of samples that are still to come */
     int endless;   /* they come until the file ends */
@@ -29,8 +34,9 @@ typedef struct {
 /* Reads as far as the first sample. `in` stays the caller's. Returns 0, or -1 with `message`. */
 int wav_open(wav_t *wav, FILE *in);
 
-/* Takes `in` for samples without a header, low byte first, to its end. */
-void wav_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels);
+/* Reads the file's header or, where it has none, takes `in` for samples, low byte first, to its end; `rate` and
+ * `channels` are those of such samples. Returns as wav_open() does. */
+int wav_open_or_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels);
 
 /*
  * Reads at most `count` samples, of two channels as many pairs. Returns how many it read, fewer only at the end, where

@@ -10,8 +10,9 @@
 
 /* Seconds of motion from which on a warning says why a program takes long. */
 #define LONG 3600u
-/* Milliseconds. No sound of speech lasts longer; the times of one that does are probably in another unit. */
+/* Milliseconds. No sound of speech lasts longer, or less; the times of one that does are probably in another unit. */
 #define LONG_SOUND 10000u
+#define SHORT_SOUND 5u
 
 const mouth_voice_t mouth_voices[] = { LABIAL_BUNDLED };
 static const mouth_voice_t laughter = { "laughter_synthetic", &laughter_synthetic, &laughter_synthetic_names };
@@ -95,6 +96,19 @@ static void warn(mouth_t *mouth, const char *where, const char *label, unsigned 
             mouth->unknown_count == MOUTH_UNKNOWN_MAX ? "; further unknown labels are not named" : "");
 }
 
+/* Asks about the first sound that is too long to be speech; remembers whether one is long enough. */
+static void check_duration(mouth_t *mouth, const char *where, const char *label, uint32_t milliseconds)
+{
+    mouth->has_sound = 1;
+    if (milliseconds >= SHORT_SOUND)
+        mouth->has_speech = 1;
+    if (milliseconds > LONG_SOUND && !mouth->long_named) {
+        mouth->long_named = 1;
+        fprintf(stderr, "%s: warning: %s'%s' lasts %lu s: is the unit of time right?\n", mouth->program, where, label,
+                (unsigned long)(milliseconds / 1000u));
+    }
+}
+
 int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, unsigned format)
 {
     memset(mouth, 0, sizeof *mouth);
@@ -122,11 +136,8 @@ int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_label
                 return failed(mouth, where, labial_result_text(phoneme));
             warn(mouth, where, label, (unsigned)phoneme);
         }
-        if (milliseconds > LONG_SOUND && phoneme != voice->model->silence && !mouth->long_named) {
-            mouth->long_named = 1;
-            fprintf(stderr, "%s: warning: %s'%s' lasts %lu s: is the unit of time right?\n", mouth->program, where,
-                    label, (unsigned long)(milliseconds / 1000u));
-        }
+        if (phoneme != voice->model->silence)
+            check_duration(mouth, where, label, milliseconds);
     }
     if (use(mouth, where, voice) != 0 || push(mouth, where, (unsigned)phoneme, milliseconds) != 0)
         return -1;
@@ -151,6 +162,9 @@ int mouth_laugh(mouth_t *mouth, const char *where, uint32_t milliseconds, unsign
 
 int mouth_end(mouth_t *mouth)
 {
+    if (mouth->has_sound && !mouth->has_speech)
+        fprintf(stderr, "%s: warning: every sound is shorter than %u ms: is the unit of time right?\n", mouth->program,
+                SHORT_SOUND);
     labial_end(&mouth->stream);
     const int result = drain(mouth);
     if (result < 0)

@@ -2,7 +2,8 @@
  * mouth.h - phonemes by name in, written frames out: what labial-say and the programs with a speech synthesiser share.
  *
  * A label that the model does not know never stops the mouth: it moves as the nearest phoneme does, and each such label
- * is named once on standard error; so is the first sound that is too long to be speech.
+ * is named once on standard error; so is the first sound that is too long to be speech, and a
+ * warning says where every sound is too short.
  */
 #ifndef LABIAL_EXAMPLE_MOUTH_H
 #define LABIAL_EXAMPLE_MOUTH_H
@@ -35,6 +36,8 @@ typedef struct {
     frames_t frames;
     uint32_t laughs; /* so far: each has its own number as seed */
     int long_named;  /* whether a sound that is too long to be speech was named */
+    int has_sound;   /* whether there was a sound, of any length */
+    int has_speech;  /* and one that is long enough to be speech */
     unsigned unknown_count;
     char unknown[MOUTH_UNKNOWN_MAX][MOUTH_LABEL_MAX + 1];
 } mouth_t;

@@ -42,6 +42,7 @@ class Source:
     text: Optional[str] = None  #: the text of a sound
     labels: str = AUTO
     format: Optional[str] = None  #: of the timings; told by the file without it
+    tier: Optional[str] = None  #: of a TextGrid
     progress: bool = False  #: whether to show a progress bar for a sound
 
     @property
@@ -69,7 +70,7 @@ def read_phonemes(source: Source) -> Tuple[Model, str, Stream]:
 def _timed(source: Source) -> List[SourceSegment]:
     if source.text is not None:
         raise LabialError(f"{source.path}: a text goes with a sound ({', '.join(SOUNDS)}), not with timings or frames")
-    return read_timings(source.path, source.format)
+    return read_timings(source.path, source.format, tier=source.tier)
 
 
 def _heard(source: Source) -> List[SourceSegment]:

@@ -42,7 +42,7 @@ def add_engine(command: argparse.ArgumentParser) -> None:
 
 
 def add_source(command: argparse.ArgumentParser) -> None:
-    """``--from``, the format of timings, as `options.source`."""
+    """``--from``, the format of timings, as `options.source`, and ``--tier``."""
     from labial.corpus.formats import names
 
     try:
@@ -51,6 +51,7 @@ def add_source(command: argparse.ArgumentParser) -> None:
         known = None
     command.add_argument("--from", dest="source", choices=known, metavar="FORMAT",
                          help=f"format of the timings: {', '.join(known or ())} (default: told by the file's contents)")
+    command.add_argument("--tier", metavar="NAME", help="the tier of a TextGrid; without it that of phones")
 
 
 def add_format(command: argparse.ArgumentParser) -> None:

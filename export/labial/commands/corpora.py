@@ -36,7 +36,8 @@ def run_timings(options: argparse.Namespace) -> int:
     if options.output:
         check_suffix(options.output, ".lab")
     how = Pronunciation(language=options.language)
-    put(as_lab(options.phones, options.labels, options.source, how, options.offset_ms / 1000.0), options.output)
+    offset = options.offset_ms / 1000.0
+    put(as_lab(options.phones, options.labels, options.source, how, offset, options.tier), options.output)
     return 0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Dict
+from typing import Any, Dict, Optional, Tuple
 
 from labial import BUNDLED
 from labial.commands.common import add_phones, put
@@ -129,9 +129,16 @@ def run_plot(options: argparse.Namespace) -> int:
     from labial.see.motion import read_bands, read_motions
 
     check(options.output)
-    timings = options.phones, options.labels, options.source
+    timings = _timings(options)
     plot(read_motions(options.frames, *timings), read_bands(*timings), options.output, options.channels or DEFAULT)
     return 0
+
+
+def _timings(options: argparse.Namespace) -> Tuple[Any, str, Optional[str], Optional[str]]:
+    """What :func:`labial.see.motion.read_motion` and `read_bands` take; both read the file."""
+    from labial.corpus.formats import stored
+
+    return options.phones and stored(options.phones), options.labels, options.source, options.tier
 
 
 # ---- page ------------------------------------------------------------------------------------------------------------
@@ -159,8 +166,8 @@ def run_page(options: argparse.Namespace) -> int:
 
     check(options.output)
     check_suffix(options.output, ".html", ".htm")
-    bands = read_bands(options.phones, options.labels, options.source)
-    motion = read_motion(options.frames, options.phones, options.labels, options.source)
+    timings = _timings(options)
+    bands, motion = read_bands(*timings), read_motion(options.frames, *timings)
     if options.head is None:
         if options.rig is not None or options.three is not None:
             raise LabialError("--rig and --three go with --head")

@@ -8,9 +8,21 @@ import importlib.util
 import sys
 import warnings
 import wave
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ContextManager, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    BinaryIO,
+    ContextManager,
+    Iterator,
+    List,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    cast,
+)
 
 from labial.commands.common import add_format, add_phones, add_said, format_of, said
 from labial.errors import DataError, LabialError, needs
@@ -29,12 +41,15 @@ _RATES = (8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
 _FOUND, _PASSING = 0.5, 5
 #: Bytes that are read at once: 20 ms of 16 kHz, so that frames of a pipe are written as they come.
 _BLOCK = 640
+#: Bytes that tell a WAV file, and what is heard without conversion.
+_HEAD, _PLAIN = 12, "a WAV file of 16 bits, one or two channels and a usual rate"
 
 
 def add_hear(command: argparse.ArgumentParser) -> None:
     """A sound, and the format of the frames."""
     command.add_argument("sound", metavar="SOUND", help="speech: a WAV file; a file of another format, if "
-                         "the extra align is installed; or - for 16-bit samples from standard input, low byte first")
+                         "the extra align is installed; or - for standard input: a WAV file, or samples of 16 bits "
+                         "without a header, low byte first")
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
     add_format(command)
     command.add_argument("--model", choices=("small", "large", "host", "ahead"),
@@ -48,9 +63,9 @@ def add_hear(command: argparse.ArgumentParser) -> None:
     command.add_argument("--exact", action="store_true",
                          help="exactly the frames of the sound: the face does not come to rest after the last one")
     command.add_argument("--rate", type=functools.partial(whole, 1, 1_000_000), metavar="RATE",
-                         help=f"with -: samples per second, one of {', '.join(map(str, _RATES))} (16000)")
+                         help=f"of samples without a header: one of {', '.join(map(str, _RATES))} a second (16000)")
     command.add_argument("--channels", type=functools.partial(whole, 1, 2), metavar="N",
-                         help="with -: 1 or 2 channels (1)")
+                         help="of samples without a header: 1 or 2 channels (1)")
 
 
 def run_hear(options: argparse.Namespace) -> int:
@@ -70,9 +85,9 @@ def run_hear(options: argparse.Namespace) -> int:
         raise LabialError(f"--phones does not go with {told[0]}")
     if options.sound != "-" and (options.rate or options.channels):
         raise LabialError("--rate and --channels go with -, a sound from standard input")
+    whole_sound: Optional[bytes] = None
     if options.sound == "-":
-        rate, channels, whole_sound = options.rate or 16000, options.channels or 1, None
-        blocks = iter(lambda: sys.stdin.buffer.read(_BLOCK), b"")
+        rate, channels, blocks = _piped(options.rate or 16000, options.channels or 1)
     else:
         rate, channels, whole_sound = sound_of(options.sound)
         blocks = iter([whole_sound])
@@ -109,7 +124,8 @@ def _words(options: argparse.Namespace) -> Optional[_Words]:
     if options.phones is not None:
         from labial.runtime.render import read_timings
 
-        return _Words(read_timings(options.phones, labels=options.labels, source=options.source), SHARE, [])
+        return _Words(read_timings(options.phones, labels=options.labels, source=options.source,
+                                   tier=options.tier), SHARE, [])
     text = said(options)
     if options.sound_alone or (text is None and importlib.util.find_spec("pocketsphinx") is None):
         return None
@@ -160,7 +176,7 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
     align`` converts it."""
     try:
         with wave.open(path, "rb") as file:
-            if file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES:
+            if _is_plain(file):
                 return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file, path))
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
@@ -169,10 +185,44 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
     return 16000, 1, _converted(path)
 
 
+def _is_plain(file: wave.Wave_read) -> bool:
+    """Whether a file is heard without conversion."""
+    return file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES
+
+
+class _Joined:
+    """A stream whose first bytes were read, as far as :mod:`wave` reads files."""
+
+    def __init__(self, head: bytes, rest: BinaryIO) -> None:
+        self._head, self._rest = head, rest
+
+    def read(self, count: int) -> bytes:
+        part, self._head = self._head[:count], self._head[count:]
+        return part + self._rest.read(count - len(part))
+
+
+def _piped(rate: int, channels: int) -> Tuple[int, int, Iterator[bytes]]:
+    """Rate, channels and samples of standard input: of a WAV file, or as given for samples without a header."""
+    if rate not in _RATES:  # before waiting for the sound
+        raise LabialError(f"{rate} samples per second are not one of {', '.join(map(str, _RATES))}")
+    if sys.stdin is None:
+        raise LabialError("standard input is closed")
+    head = sys.stdin.buffer.read(_HEAD)
+    sound = _Joined(head, sys.stdin.buffer)
+    if head[:4] not in (b"RIFF", b"RF64") or head[8:] != b"WAVE":
+        return rate, channels, iter(lambda: sound.read(_BLOCK), b"")
+    with suppress(*wav.ERRORS):
+        file = wave.open(cast(BinaryIO, sound))
+        if _is_plain(file):
+            block = _BLOCK // (2 * file.getnchannels())
+            return file.getframerate(), file.getnchannels(), wav.blocks(file, "standard input", block)
+    raise DataError("standard input", None, f"a sound with a header must be {_PLAIN}")
+
+
 def _converted(path: str) -> bytes:
     import numpy as np
 
-    with needs(f"{path}: a sound that is not a WAV file of 16 bits, one or two channels and a usual rate", "align"):
+    with needs(f"{path}: a sound that is not {_PLAIN}", "align"):
         from labial.sound.samples import read_sound
     data: bytes = np.clip(np.rint(read_sound(path) * 32767), -32768, 32767).astype("<i2").tobytes()
     return data

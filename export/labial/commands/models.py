@@ -66,7 +66,7 @@ def run_synth(options: argparse.Namespace) -> int:
     check(options.output)
     form = format_of(options)
     model = load(options.model)
-    phonemes = read_stream(options.phones, model, options.labels, options.source)
+    phonemes = read_stream(options.phones, model, options.labels, options.source, options.tier)
     fps, name = options.fps or model.fps, Path(options.model).stem
     motion = np.concatenate([np.zeros((0, CHANNELS)), *delivered(
         model, phonemes, whole=options.whole, articulation=options.articulation, exact=options.exact)])
@@ -188,7 +188,7 @@ def run_check(options: argparse.Namespace) -> int:
     from labial.tables.phones import read_stream
 
     model, tables = exported(options, "checked_model")
-    streams = [read_stream(path, model, options.labels, options.source) for path in options.phones]
+    streams = [read_stream(path, model, options.labels, options.source, options.tier) for path in options.phones]
     comparison = compare(model, tables, streams)
     print(comparison.table())
     failures = comparison.failures()
@@ -226,7 +226,7 @@ def run_bake(options: argparse.Namespace) -> int:
     from labial.bake.source import Source
 
     source = Source(options.file, options.model, said(options), options.labels, options.source,
-                    progress=shows_progress(options))
+                    options.tier, shows_progress(options))
     for line in bake(source, options.output, options.kind, options.rig, options.name, options.parts):
         print(line)
     return 0

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from functools import cache
 from typing import Any, Iterator, List, NamedTuple, Optional, Tuple
 
 from labial.core.library import LAUGH_FULL, OK, STARVED, WAITING, Library, library, memory
 from labial.errors import LabialError
+
+#: A laugh between phonemes, with its intensity.
+LAUGH = re.compile(r"<laugh(?:[: ]\s*([^\s>]+))?>")
 
 
 class Timing(NamedTuple):
@@ -77,6 +81,6 @@ def timings(text: bytes, form: str = "auto", tier: Optional[str] = None, number:
 def _timing(core: Library, block: Any, times: Any, numbers: Any) -> Timing:
     label, word = core.timings_label(block), core.timings_word(block)
     if label is None:
-        label = b"" if numbers[2] < 0 else b"<laugh:%g>" % (numbers[2] / LAUGH_FULL)
+        label = b"" if numbers[2] < 0 else b"<laugh:%.3g>" % (numbers[2] / LAUGH_FULL)
     return Timing(times[0], times[1], None if times[2] < 0 else times[2], label.decode("utf-8"),
                   None if word is None else word.decode("utf-8"), numbers[1], bool(numbers[3]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,7 +15,7 @@ from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import PathLike, SourceSegment, lab_of, phone_set_of, phoneme_segments, read_segments
 from labial.corpus.words import PLAIN, Pronunciation
 from labial.errors import DataError
-from labial.files.grammar import read_text
+from labial.files.grammar import Content, read_bytes, read_text
 
 
 def names() -> Tuple[str, ...]:
@@ -40,13 +41,24 @@ def suffixes() -> Dict[str, str]:
 
 
 def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciation = PLAIN,
-                 offset: float = 0.0) -> List[SourceSegment]:
+                 offset: float = 0.0, tier: Optional[str] = None) -> List[SourceSegment]:
     """Reads timings in the format `source`, one of `names()`; without it, in the one that the suffix tells, else
     the content. Where words are told, `how` says how they are pronounced. `offset` seconds are added to all times; what
-    that moves before the beginning is cut off."""
+    that moves before the beginning is cut off. `tier` names the tier of a TextGrid."""
+    path = stored(path)
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    segments = service_files.read(path, form, how) if form in services.SERVICES else read_segments(path, form)
-    return _moved(segments, offset) if offset else segments
+    segments = service_files.read(path, form, how) if form in services.SERVICES else read_segments(path, form, tier)
+    if not offset:
+        return segments
+    moved = _moved(segments, offset)
+    if not moved:
+        raise DataError(path, None, f"an offset of {1000 * offset:g} ms leaves no segments")
+    return moved
+
+
+def stored(path: PathLike) -> PathLike:
+    """What stands in for a file that is read several times, as a pipe cannot be: its bytes."""
+    return path if isinstance(path, (Content, Parsed)) else Content(read_bytes(path), os.fspath(path))
 
 
 def _moved(segments: List[SourceSegment], offset: float) -> List[SourceSegment]:
@@ -57,11 +69,11 @@ def _moved(segments: List[SourceSegment], offset: float) -> List[SourceSegment]:
 
 
 def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None, how: Pronunciation = PLAIN,
-           offset: float = 0.0) -> str:
-    """Timings of any format as lines of ``start end phoneme``, seconds: phonemes of speech, or of laughter where that
-    knows more of the labels. They follow each other without gaps from time 0."""
-    segments = read_timings(path, source, how, offset)
-    return lab_of(phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels))
+           offset: float = 0.0, tier: Optional[str] = None) -> str:
+    """Timings of any format as lines of ``start end phoneme``, seconds: phonemes of speech and laughs, or phonemes of
+    laughter where that knows more of the labels. They follow each other without gaps from time 0."""
+    segments = read_timings(path, source, how, offset, tier)
+    return lab_of(phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels, laughs=True))
 
 
 def _told_by_content(path: PathLike) -> str:

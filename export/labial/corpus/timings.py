@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.core import lines
+from labial.core.lines import LAUGH
+from labial.core.numbers import SHORTEST
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import AUTO, PHONE_SETS, PhoneSet
 from labial.errors import DataError
@@ -30,6 +32,7 @@ LONGEST = 86400.0
 _LONGEST_PHONEME = 3600
 #: Seconds. No sound of speech lasts longer; the times of one that does are probably in another unit.
 _LONGEST_SOUND = 10.0
+_NO_LAUGH = "one model alone cannot laugh, so laughs are silence; labial-say and labial.render() laugh"
 
 
 class Empty(DataError):
@@ -78,7 +81,8 @@ def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> 
 
 
 def phoneme_segments(
-    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO
+    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO,
+    laughs: bool = False
 ) -> Tuple[Segment, ...]:
     """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
     error message.
@@ -86,23 +90,26 @@ def phoneme_segments(
     An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment. A
     silence of more than an hour becomes several; another phoneme of such a length is a DataError.
     Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
-    phoneme, with one warning each. The first sound that is too long to be speech gives a warning, too.
+    phoneme, with one warning each. Laughs stay as ``<laugh:0.7>`` if `laughs`; otherwise they are unknown labels, too,
+    and silence. Sounds that are too long or too short to be speech give a warning.
     """
     result: List[Segment] = []
-    unknown: Set[str] = set()
+    warned: Set[str] = set()
     long_named = False
     previous = 0.0
     for place, item in enumerate(segments, 1):
-        label = meaning(item, phone_set, labels)
+        laugh = laugh_of(item.label)
+        label = laugh if laughs and laugh else meaning(item, phone_set, labels)
         if label is None:
             where = f"interval {place}: " if item.line is None else ""
             problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
             if strict:
                 raise problem
-            label = phone_set.nearest(item.label, labels)
-            if item.label not in unknown:
-                warnings.warn(f"{problem}; it moves as {label}", stacklevel=2)
-                unknown.add(item.label)
+            label = phone_set.silence if laugh else phone_set.nearest(item.label, labels)
+            if (key := "<laugh>" if laugh else item.label) not in warned:
+                warned.add(key)
+                silent = str(DataError(path, item.line, f"{where}{_NO_LAUGH}"))
+                warnings.warn(silent if laugh else f"{problem}; it moves as {label}", stacklevel=2)
         if item.start - previous > TOLERANCE:
             previous = _silence(result, previous, item.start, phone_set)
         end = max(item.end, previous)
@@ -112,14 +119,30 @@ def phoneme_segments(
                 raise DataError(path, item.line, f"{where}{item.label!r} lasts {end - previous:g} s, more than the "
                                 f"{_LONGEST_PHONEME} s that a phoneme may")
             previous = _silence(result, previous, end - _LONGEST_PHONEME, phone_set)
-        if end - previous > _LONGEST_SOUND and label != phone_set.silence and not long_named:
+        if end - previous > _LONGEST_SOUND and label not in (phone_set.silence, laugh) and not long_named:
             long_named = True
             lasts = f"{item.label!r} lasts {end - previous:g} s: is the unit of time right?"
             warnings.warn(str(DataError(path, item.line, lasts)), stacklevel=2)
         apex = None if item.apex is None else min(max(item.apex, previous), end)
         result.append(Segment(previous, end, label, apex, item.word))
         previous = end
+    _expect_seconds(path, [item.duration for item in result if item.label != phone_set.silence])
     return tuple(result)
+
+
+def laugh_of(label: str) -> Optional[str]:
+    """A laugh's label without blanks; None for a label that is not a laugh's."""
+    found = LAUGH.fullmatch(label)
+    return found and (f"<laugh:{found[1]}>" if found[1] else "<laugh>")
+
+
+def _expect_seconds(path: PathLike, durations: Sequence[float]) -> None:
+    """Warns the caller's caller where sounds are so short that their times must be in another unit. The length of the
+    last one may be a guess, as services report only when it begins."""
+    if durations and 1000 * max(durations[:-1] or durations) < SHORTEST:
+        what = "every sound but the last" if len(durations) > 1 else "every sound"
+        text = f"{what} is shorter than {SHORTEST:g} ms: is the unit of time right?"
+        warnings.warn(str(DataError(path, None, text)), stacklevel=3)
 
 
 def _silence(result: List[Segment], start: float, end: float, phone_set: PhoneSet) -> float:

@@ -76,7 +76,7 @@ def meant(name: str, known: Iterable[str]) -> str:
 def read_toml(path: Union[str, os.PathLike[str]]) -> Dict[str, Any]:
     """The content of a TOML file. Raises DataError, which names the file and the line, for invalid TOML."""
     try:
-        text = read_bytes(path, limits.TOML).decode("utf-8")
+        text = read_bytes(path, limits.TOML).decode("utf-8-sig")
         for number, content in enumerate(_TEXTS.sub("", text).split("\n"), 1):
             if content.count(".") > _DOTS:  # the parser's time grows with the square of a key's parts
                 raise DataError(path, number, "not TOML: nested too deeply")

@@ -18,12 +18,12 @@ _BLOCK = 65_536
 _UNKNOWN = 0x7FFFF000 // 8
 
 
-def blocks(sound: wave.Wave_read, path: str = "the sound") -> Iterator[bytes]:
+def blocks(sound: wave.Wave_read, path: str = "the sound", block_frames: int = _BLOCK) -> Iterator[bytes]:
     """The content of an open file, block by block: reading all at once takes as much memory as its head says. Warns
     where the file ends before it should; raises DataError where it has no samples at all."""
     count, wanted = 0, sound.getnframes()
     size = sound.getsampwidth() * sound.getnchannels()
-    while block := sound.readframes(_BLOCK):
+    while block := sound.readframes(block_frames):
         count += len(block) // size
         yield block
     if not count:

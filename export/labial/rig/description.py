@@ -172,7 +172,8 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
     alone = "from" not in content and "visemes" in content  # it follows sounds, not FAPs
     weights, reach = ((0.0,) * CHANNELS, 1.0) if alone else _source(table)
     closed = table.number("closed") if "closed" in content else None
-    neutral = closed if closed is not None and "neutral" not in content else table.number("neutral")
+    rest = "closed" if closed is not None and "neutral" not in content else "neutral"  # the key of the neutral value
+    neutral = table.number(rest)
     if alone and "gain" in content:
         raise table.error("gain", "goes with from: how many units is a FAP unit?")
     if ("full" in content) == ("gain" in content):
@@ -184,7 +185,7 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
             raise table.error("invert", "goes with gain; with full, say where full lies instead")
         full = table.number("full")
         if full == neutral:
-            raise table.error("full", "is the same as neutral: the output would not move")
+            raise table.error("full", f"is the same as {rest}: the output would not move")
         if "reach" in content:
             if alone:
                 raise table.error("reach", "goes with from: how many FAP units is full?")
@@ -210,13 +211,11 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
     deadband = table.number("deadband") if "deadband" in content else 0.0
     if deadband < 0:
         raise table.error("deadband", f"{deadband:g} is negative")
-    _check_values(table, unit, neutral=neutral, minimum=minimum, maximum=maximum,
-                  **({"full": table.number("full")} if "full" in content else {}),
-                  **({"closed": closed} if closed is not None else {}))
-    if closed is not None and not minimum <= closed <= maximum:
-        raise table.error("closed", f"{closed:g} is not within {minimum:g} .. {maximum:g}")
+    if minimum > maximum:
+        raise table.error("minimum", f"{minimum:g} is above the maximum, {maximum:g}")
+    _check_values(table, unit, minimum, maximum)
     return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband,
-                  acceleration, _curve(table, unit, neutral), _visemes(table))
+                  acceleration, _curve(table, unit, rest), _visemes(table))
 
 
 def _visemes(table: Table) -> Row:
@@ -232,9 +231,9 @@ def _visemes(table: Table) -> Row:
     return tuple(table.as_number(f"visemes.{name}", given[name]) if name in given else 0.0 for name in VISEMES)
 
 
-def _curve(table: Table, unit: Unit, neutral: float) -> Tuple[Tuple[float, float], ...]:
+def _curve(table: Table, unit: Unit, rest: str) -> Tuple[Tuple[float, float], ...]:
     """The curve that makes a linkage open evenly, from measured points [VALUE, OPENING]: the values of an even linkage,
-    from neutral to full, and the values that open this linkage equally far."""
+    from neutral, which the key `rest` has, to full, and the values that open this linkage equally far."""
     if "curve" not in table.content:
         return ()
     given, (least, most) = table.content["curve"], CURVE_POINTS
@@ -255,8 +254,8 @@ def _curve(table: Table, unit: Unit, neutral: float) -> Tuple[Tuple[float, float
     if any(value <= 0 for value, _ in steps) or not (all(opening > 0 for _, opening in steps)
                                                      or all(opening < 0 for _, opening in steps)):
         raise table.error("curve", "from each value to the next larger one the opening must grow, or from each shrink")
-    full = table.number("full")
-    for name, value in (("neutral", neutral), ("full", full)):
+    neutral, full = table.number(rest), table.number("full")
+    for name, value in ((rest, neutral), ("full", full)):
         if not points[0][0] <= value <= points[-1][0]:
             raise table.error("curve", f"{name}, {value:g}, is not within {points[0][0]:g} .. {points[-1][0]:g}, where "
                                        "the opening was measured")
@@ -272,14 +271,15 @@ def _between(points: Sequence[Tuple[float, float]], value: float) -> float:
     return start + (end - start) * (value - low) / (high - low)
 
 
-def _check_values(table: Table, unit: Unit, **values: float) -> None:
-    if values["minimum"] > values["maximum"]:
-        raise table.error("minimum", f"{values['minimum']:g} is above the maximum, {values['maximum']:g}")
-    if not unit.servo:
-        return
-    for key, value in values.items():
-        if not PULSE_MIN <= value <= PULSE_MAX:
+def _check_values(table: Table, unit: Unit, minimum: float, maximum: float) -> None:
+    """Checks the values that the description gives an output: of servos and weights their range, of servos and of
+    `closed` that they lie within the limits."""
+    given = {key: table.number(key) for key in _PLACES if key in table.content}
+    for key, value in given.items():
+        if unit.name == "weight" and round(value * unit.scale) > unit.scale:
+            raise table.error(key, f"{value:g} is beyond 1: weights are 0 to 1")
+        if unit.servo and not PULSE_MIN <= value <= PULSE_MAX:
             raise table.error(key, f"{value:g} is not a servo's pulse, {PULSE_MIN:g} .. {PULSE_MAX:g} microseconds")
-    for key in ("neutral", "full"):
-        if key in values and not values["minimum"] <= values[key] <= values["maximum"]:
-            raise table.error(key, f"{values[key]:g} is not within {values['minimum']:g} .. {values['maximum']:g}")
+    for key, value in given.items():
+        if (unit.servo or key == "closed") and not minimum <= value <= maximum:
+            raise table.error(key, f"{value:g} is not within {minimum:g} .. {maximum:g}")

@@ -13,8 +13,7 @@ from typing import Iterable, List, NamedTuple, Optional, Union
 from labial.core.numbers import whole
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
-from labial.runtime.rig import Rig
+from labial.runtime.rig import Faps, Rig, one_frame
 
 #: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_FPS of include/labial/beside.h.
 FORMAT, RATE = 2, 50
@@ -25,8 +24,6 @@ SESSIONS = 65536
 #: Largest difference of an output's limits for which the toy's sums stay below 2^31.
 SPAN_MAX = 8_000_000
 
-#: A frame of a stream or of hearing, or its 13 FAPs.
-Faps = Union[Frame, Iterable[int]]
 
 
 class Packet(NamedTuple):
@@ -108,15 +105,7 @@ class Beside:
         start early, because it is slow, sees as many frames ahead as are pushed at once."""
         faps = array("h")
         for frame in frames:
-            row = frame.faps if isinstance(frame, Frame) else tuple(frame)
-            if len(row) != CHANNELS:
-                raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(row)}")
-            try:
-                faps.extend(row)
-            except OverflowError:
-                raise LabialError("a FAP is beyond 16 bits") from None
-            except TypeError:
-                raise TypeError("FAPs are whole numbers") from None
+            faps.extend(one_frame(frame))
         values = self._rig.play(faps, 65535)
         self._rows += map(self._bytes, zip(*[iter(values)] * len(self._rig.outputs)))
         self._next += len(faps) // CHANNELS

@@ -5,14 +5,13 @@ from __future__ import annotations
 import ctypes
 import math
 import os
-from typing import Iterable, Mapping, Tuple, Union
+from typing import Mapping, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import DONE, checked, library, memory
 from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError
-from labial.runtime.frame import Frame
-from labial.runtime.rig import Rig, Values, one_frame
+from labial.runtime.rig import Faps, Rig, Values, one_frame
 
 #: LABIAL_FACE_AHEAD_MAX.
 AHEAD_MAX = 1000
@@ -62,9 +61,9 @@ class Face:
         return self.rig.outputs[:self._library.servos_attached(self._address)]
 
     @alone
-    def frame(self, frame: Union[Frame, Iterable[int]]) -> None:
+    def frame(self, frame: Faps) -> None:
         """Takes a frame of a stream or of hearing, or its 13 FAPs, integers of 16 bits."""
-        numbers = one_frame(frame.faps if isinstance(frame, Frame) else frame)  # which must outlive the call
+        numbers = one_frame(frame)  # which must outlive the call
         self._library.servos_frame(self._address, numbers.buffer_info()[0])
         self._result = min(self._result, DONE - 1)
 

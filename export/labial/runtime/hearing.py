@@ -165,6 +165,7 @@ class Hearing:
         with Hearing(self._sample_rate, self._channels, model=self._model) as other:
             other.level = found = _LEVEL_MIN
             samples = other._samples(sound)
+            other._part = b""  # bytes behind the last sample, which would shift the blocks
             step = self._sample_rate // _LOOKS * self._channels
             for first in range(0, len(samples), step):
                 other.push(samples[first : first + step])

@@ -8,6 +8,8 @@ from typing import Iterable, List, Sequence, Tuple, Union
 from labial.core.numbers import number
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.runtime.frame import Frame
+from labial.runtime.rig import faps_of
 
 #: The share of the sound's lips that is nearest to people's where the phonemes are known (docs/hearing.md).
 SHARE = 0.3
@@ -18,7 +20,7 @@ _UPPER, _LOWER = FAP_NUMBERS.index(51), FAP_NUMBERS.index(52)
 #: The jaw, and what moves lips up and down, but for their corners.
 _LIPS = tuple(FAP_NUMBERS.index(fap) for fap in (3, 51, 52, 55, 56, 57, 58))
 
-Pose = Sequence[float]
+Pose = Union[Frame, Sequence[float]]
 
 
 def with_sound(spoken: Iterable[Pose], heard: Iterable[Pose],
@@ -30,13 +32,13 @@ def with_sound(spoken: Iterable[Pose], heard: Iterable[Pose],
 
         spoken = labial.render(timings, exact=True)
         with labial.Hearing(rate, exact=True) as hearing:
-            heard = [frame.faps for frame in hearing.frames([sound])]
+            heard = list(hearing.frames([sound]))
         frames = labial.with_sound(spoken, heard)
 
     Args:
-        spoken: frames of 13 FAPs, as of :func:`labial.render`. heard: those of :class:`labial.Hearing`, from the same
-        moment on. share: of what is heard, 0 .. 1, or one for each frame. Where one motion is longer than the other, it
-        goes on alone.
+        spoken: frames or their 13 FAPs, as of :func:`labial.render`. heard: those of :class:`labial.Hearing`, from the
+        same moment on. share: of what is heard, 0 .. 1, or one for each frame. Where one motion is longer than the
+        other, it goes on alone.
 
     Returns whole FAP units. Raises LabialError for a share out of range, and for a frame that has not 13 numbers.
     """
@@ -51,7 +53,7 @@ def with_sound(spoken: Iterable[Pose], heard: Iterable[Pose],
 
 
 def _pose(pose: Pose) -> List[float]:
-    values = [float(value) for value in pose]
+    values = [float(value) for value in faps_of(pose)]
     if len(values) != CHANNELS:
         raise LabialError(f"a frame has {len(values)} numbers, not {CHANNELS}")
     return values

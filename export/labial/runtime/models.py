@@ -25,6 +25,8 @@ from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
 LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
+#: How a ``.npz`` begins.
+_NPZ = b"PK\x03\x04"
 
 
 class Model:
@@ -57,6 +59,9 @@ class Model:
             content = file.read(limits.BLOB + 1)
         if len(content) > limits.BLOB:
             raise ModelError(f"{self.name}: it has more than the {limits.BLOB:,} bytes that are read")
+        if content.startswith(_NPZ):
+            raise ModelError(f"{self.name}: a model that training wrote; labial export {self.name} --name NAME --blob "
+                             "-o DIR makes the NAME.lbm of it that this call reads")
         # The library uses the tables in place: this object keeps both blocks alive.
         self._content = memory(len(content))
         ctypes.memmove(self._content, content, len(content))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import re
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
 
+from labial.core.lines import LAUGH
 from labial.core.numbers import duration, expect_milliseconds
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
@@ -15,6 +15,7 @@ from labial.runtime.words import offset
 
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
 Timing = Tuple[Union[str, int], float]
+
 
 class Motion(List[Tuple[int, ...]]):
     """Frames of an utterance, each 13 FAPs, :attr:`fps` frames per second."""
@@ -28,9 +29,6 @@ class Motion(List[Tuple[int, ...]]):
         from labial.see.player import framed, player
 
         return framed(player("", self.fps, self))
-
-
-_LAUGH = re.compile(r"<laugh(?:[: ]\s*([^\s>]+))?>")
 
 
 def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter: Optional[Model] = None,
@@ -59,7 +57,7 @@ def _push(stream: Stream, place: int, timing: Any) -> float:
     if not isinstance(timing, (tuple, list)) or len(timing) != 2:
         raise TypeError(f"timing {place} is no pair of a phoneme and milliseconds")
     phoneme, milliseconds = timing
-    laugh = _LAUGH.fullmatch(phoneme) if isinstance(phoneme, str) else None
+    laugh = LAUGH.fullmatch(phoneme) if isinstance(phoneme, str) else None
     try:
         if laugh:
             stream.laugh(duration(milliseconds) / 1000.0, _intensity(laugh[1]))
@@ -81,23 +79,24 @@ def _intensity(text: Optional[str]) -> float:
 def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str, Any]], *, labels: str = "auto",
                  source: Optional[str] = None, offset_ms: float = 0.0,
                  own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = "en",
-                 numbers: bool = False) -> List[Tuple[str, float]]:
+                 numbers: bool = False, tier: Optional[str] = None) -> List[Tuple[str, float]]:
     """The input of :func:`render` from timings in any format that ``labial timings`` reads (docs/timings.md): phonemes
-    with their milliseconds, from time 0 on and without gaps.
+    and laughs with their milliseconds, from time 0 on and without gaps.
 
     `given` is the path of a file, an open file, such as :class:`io.StringIO`, or the parsed JSON of a service, a list
     or a dict, or the objects of its client library, such as Piper's chunks. `labels` is the set of the labels, `source`
     the format if it should not be detected. `offset_ms` is added to all times: a positive number for a voice that
     reports them too early. Where words or characters are told, the other arguments say how they are pronounced, as for
-    :func:`labial.phonemes`. Raises DataError with the file and, if known, the line.
+    :func:`labial.phonemes`. `tier` is the tier of a TextGrid, by its name. Raises DataError with the file and, if
+    known, the line.
     """
     from labial.corpus.formats import read_timings as read
     from labial.corpus.timings import phone_set_of, phoneme_segments
     from labial.corpus.words import pronunciation
 
     path = given if isinstance(given, (str, os.PathLike)) else _content(given)
-    segments = read(path, source, pronunciation(own, language, numbers), offset(offset_ms) / 1000.0)
-    found = phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels)
+    segments = read(path, source, pronunciation(own, language, numbers), offset(offset_ms) / 1000.0, tier)
+    found = phoneme_segments(path, segments, phone_set_of(segments, labels), False, labels, laughs=True)
     ends = [round(segment.end * 1000.0) for segment in found]
     return [(segment.label, end - begin) for segment, begin, end in zip(found, [0, *ends], ends)]
 

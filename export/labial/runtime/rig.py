@@ -9,7 +9,7 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Deque, Dict, Iterable, Iterator, List, Tuple, Union
+from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, Protocol, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
@@ -19,6 +19,18 @@ from labial.rig import FACES, description_of
 
 if TYPE_CHECKING:
     from labial.rig.description import Rig as Description
+
+
+class HasFaps(Protocol):
+    """A frame, such as :class:`labial.Frame`."""
+
+    @property
+    def faps(self) -> Sequence[int]:
+        """Its 13 FAPs."""
+
+
+#: A frame of a stream or of hearing, or its 13 FAPs.
+Faps = Union[HasFaps, Iterable[int]]
 
 #: Value of each output by name: an int, or a float where the unit is weight.
 Values = Dict[str, Union[int, float]]
@@ -33,9 +45,15 @@ def _whole_faps(faps: Iterable[int]) -> array[int]:
         raise TypeError("FAPs are whole numbers") from None
 
 
-def one_frame(faps: Iterable[int]) -> array[int]:
+def faps_of(frame: Any) -> Iterable[Any]:
+    """The FAPs of a frame, or of what is its FAPs."""
+    found: Iterable[Any] = getattr(frame, "faps", frame)
+    return found
+
+
+def one_frame(frame: Faps) -> array[int]:
     """The 13 FAPs of a frame as 16-bit integers. Raises LabialError for others than 13, and for FAPs beyond that."""
-    numbers = _whole_faps(faps)
+    numbers = _whole_faps(faps_of(frame))
     if len(numbers) != CHANNELS:
         raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
     return numbers
@@ -125,12 +143,13 @@ class Rig:
         ctypes.memset(self._changes, 0, ctypes.sizeof(self._changes))
         return self.values
 
-    def apply(self, faps: Iterable[int], following: Iterable[int] = (), *, visemes: Iterable[int] = ()) -> Values:
-        """Applies one frame of 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the frames
-        after it, one frame after the other: with them a servo with a `closed` position starts early enough to be closed
-        in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of the
-        frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. They are
-        for faces without limits of acceleration, and need no frames that follow."""
+    def apply(self, faps: Faps, following: Iterable[int] = (), *, visemes: Iterable[int] = ()) -> Values:
+        """Applies one frame, or its 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the
+        frames after it, one frame after the other: with them a servo with a `closed` position starts early enough to be
+        closed in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of
+        the frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. They
+        are for faces without limits of acceleration, and need no frames that follow. :meth:`labial.Frame.rig` gives
+        them by itself."""
         numbers, ahead = one_frame(faps), _whole_faps(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
@@ -143,14 +162,14 @@ class Rig:
                               f"{len(shares)} and {len(ahead)} FAPs that follow")
         return self._shown(numbers, shares)
 
-    def ahead(self, frames: Iterable[Iterable[int]], count: int) -> Iterator[Values]:
+    def ahead(self, frames: Iterable[Faps], count: int) -> Iterator[Values]:
         """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
         Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
-        waiting: Deque[List[int]] = deque()
+        waiting: Deque[array[int]] = deque()
         for frame in frames:
-            waiting.append(list(frame))
+            waiting.append(one_frame(frame))
             if len(waiting) > count:
                 yield self.apply(waiting.popleft(), chain.from_iterable(waiting))
         while waiting:

@@ -47,7 +47,8 @@ class Band:
 
 
 def read_motion(
-    path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None
+    path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
+    tier: Optional[str] = None
 ) -> Motion:
     """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells; or, by a model, makes the motion
     of phoneme timings of the format `source`. Raises DataError; LabialError for a model without timings."""
@@ -55,13 +56,13 @@ def read_motion(
     if is_model(path):
         if timings is None:
             raise LabialError(f"{os.fspath(path)}: a model speaks phoneme timings: give --phones")
-        return _spoken(path, timings, labels, source)
+        return _spoken(path, timings, labels, source, tier)
     if Path(path).suffix.lower() == ".fap":
         return Motion(name, *read_fap(path))
     return Motion(name, *read_frames(path))
 
 
-def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str]) -> Motion:
+def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str], tier: Optional[str]) -> Motion:
     """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
     DataError."""
     from labial.reference.synthesis import delivered
@@ -70,17 +71,18 @@ def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[st
     from labial.tables.phones import read_stream
 
     read = load(model)
-    phonemes = read_stream(timings, read, labels, source)
+    phonemes = read_stream(timings, read, labels, source, tier)
     frames = np.concatenate(list(delivered(read, phonemes)))
     sounds = shares([(read.phonemes[number], milliseconds) for number, milliseconds in phonemes], read.fps, len(frames))
     return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames, sounds)
 
 
 def read_motions(
-    paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None
+    paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
+    tier: Optional[str] = None
 ) -> List[Motion]:
     """Reads several as :func:`read_motion` does; where two have the same name, all are called by their paths."""
-    motions = [read_motion(path, timings, labels, source) for path in paths]
+    motions = [read_motion(path, timings, labels, source, tier) for path in paths]
     if len({motion.name for motion in motions}) < len(motions):
         motions = [replace(motion, name=os.fspath(path)) for motion, path in zip(motions, paths)]
     return motions
@@ -126,7 +128,9 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None) -> List[Band]:
+def read_bands(
+    path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None, tier: Optional[str] = None
+) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
     Labels are of the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an
@@ -134,7 +138,7 @@ def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[st
     """
     if path is None:
         return []
-    segments = [segment for segment in read_timings(path, source) if segment.end > segment.start]
+    segments = [segment for segment in read_timings(path, source, tier=tier) if segment.end > segment.start]
     phones = phone_set_of(segments, labels)
     return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
 
