@@ -1,8 +1,8 @@
 // Finds out which weights a loaded avatar takes, and moves it. attach.d.ts documents it.
 import { LabialError } from "./memory.js";
 
-/** A name without its case, separators and the mesh's name before a dot. */
-const plain = (name) => name.replace(/^.*\./, "").replace(/[\W_]/g, "").toLowerCase();
+/** A name without its case, separators and the mesh's name before a dot; behind some dots is a side, L or R. */
+const plain = (name) => name.replace(/^.*\.(?=[^.]{2})/, "").replace(/[\W_]/g, "").toLowerCase();
 
 /** Other names of a weight: Ready Player Me's visemes, VRoid's shapes, sides as Face Cap has them. */
 function namesOf(output, weight) {
@@ -42,6 +42,10 @@ export class Head {
         if (source && typeof source.at !== "function") {
             throw new TypeError("the source is none that has at(): a track, a hearing or a voice");
         }
+        if (source?.output !== undefined && source.output !== this.output) {
+            const [given, taken] = [source, this].map(({ output }) => (typeof output === "string" ? output : "a rig's"));
+            throw new TypeError(`the source's output is ${given}, and the head takes ${taken}: { output: head.output } makes it so`);
+        }
         if (!source && this.#source) this.rest();
         this.#source = source ?? null;
     }
@@ -54,6 +58,7 @@ export class Head {
         const source = this.#source;
         if (!source) return;
         const at = seconds ?? this.audio?.currentTime;
+        if (at === undefined && source.at.length > 0) throw new TypeError("the source has no clock: set head.audio, or say the time");
         this.show(at === undefined ? source.at() : source.at(at));
     }
 
@@ -91,10 +96,11 @@ export function attach(avatar, { output } = {}) {
     const manager = vrm?.expressionManager;
     for (const name of manager ? Object.keys(manager.expressionMap) : []) add(name, (weight) => manager.setValue(name, weight));
     const expressed = manager && kindOf(move, reached);
+    const isExpressed = expressed && (typeof output !== "string" || output === expressed);
     scene.traverse((mesh) => {
         if (!mesh.morphTargetDictionary) return;
         meshes.push(mesh);
-        if (expressed) return; // the expressions move the shapes
+        if (isExpressed) return; // the expressions move the shapes
         for (const [name, place] of Object.entries(mesh.morphTargetDictionary)) {
             add(name, (weight) => { mesh.morphTargetInfluences[place] = weight; });
             const known = plain(name);
@@ -104,12 +110,19 @@ export function attach(avatar, { output } = {}) {
         }
     });
     const kind = output ?? kindOf(move, reached);
+    const fits = typeof output !== "string" || KINDS.some(([one, names]) => one === output && names.some(has(move, one)));
+    if (!fits) throw new LabialError(`the avatar has none of the shapes of ${JSON.stringify(output)}`);
     if (!kind) {
         const names = [...new Set(meshes.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
         throw new LabialError(names.length ? `the avatar's shapes are neither ARKit's nor visemes: ${names.slice(0, 8).join(", ")}` +
             `${names.length > 8 ? ", ..." : ""}; labial fit makes a rig for them` : "the avatar has no shapes (morph targets)");
     }
     return new Head(kind, meshes, move);
+}
+
+/** Whether there is a weight of a kind, under any of its names. */
+function has(move, kind) {
+    return (name) => namesOf(kind, name).some((one) => move.has(one));
 }
 
 /** How far a shape moves a vertex at most; endlessly where that is not known. */
@@ -122,8 +135,7 @@ function reach(moves) {
 /** The first kind whose names are there. Heads whose jaw hardly opens, as VRoid's to which ARKit's names were added, have
  * visemes that open the mouth. */
 function kindOf(move, reached) {
-    const has = (kind) => (name) => namesOf(kind, name).some((one) => move.has(one));
     const opens = reached.get("jawopen") ?? Infinity, ah = Math.max(0, ...AH.map((name) => reached.get(name) ?? 0));
-    return KINDS.find(([kind, names]) => names.filter(has(kind)).length >= ENOUGH[kind] &&
+    return KINDS.find(([kind, names]) => names.filter(has(move, kind)).length >= ENOUGH[kind] &&
         (kind !== "arkit" || opens >= ah / 2))?.[0];
 }

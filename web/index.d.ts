@@ -220,6 +220,8 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     readonly done: boolean;
     /** The AudioContext whose clock counts, or null. */
     readonly context: Dom<"AudioContext"> | null;
+    /** The form of its frames. */
+    readonly output: O;
     /** The sound of a source in step with the lips, to be connected where `play` is false; null for a sound that is
      * pushed. */
     readonly sound: Dom<"AudioNode"> | null;
@@ -396,6 +398,8 @@ export class Voice<O extends Output = "faps"> {
     /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
      * is neutral. */
     readonly done: boolean;
+    /** The form of its frames. */
+    readonly output: O;
     /** Nothing has begun since cancel(). */
     readonly cancelled: boolean;
     /** What became so far of the messages: how many there were; words, phonemes and so on that were told and that made no
@@ -410,6 +414,9 @@ export class Voice<O extends Output = "faps"> {
     close(): void;
 }
 
+/** The bytes of a module, or what they are compiled to, a WebAssembly.Module, which not every program's types know. */
+type Wasm = ArrayBuffer | ArrayBufferView | object;
+
 /** The library. One serves any number of streams. */
 export class Labial {
     /** The library, with the speech model. `laughter` is the laughter model, or a function that loads it when laughter()
@@ -419,7 +426,7 @@ export class Labial {
         laughter?: Laughter | Promise<Laughter> | (() => Laughter | Promise<Laughter>);
         hearing?: Hears | Promise<Hears> | (() => Hears | Promise<Hears>);
         words?: HasWords | Promise<HasWords> | (() => HasWords | Promise<HasWords>);
-        wasm?: BufferSource | WebAssembly.Module | Promise<BufferSource | WebAssembly.Module>;
+        wasm?: Wasm | Promise<Wasm>;
     }): Promise<Labial>;
     /** The laughter model, loaded once; after that streams laugh. Rejects if load() got none. */
     laughter(): Promise<Model>;

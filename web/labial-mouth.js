@@ -50,8 +50,9 @@ class StreamPlayer {
         this.period = 1 / stream.fps;
     }
 
-    /** Ticks until the due frame is ready, or until none comes; then the last one stays. */
-    at(seconds) {
+    /** Ticks until the due frame is ready, or until none comes; then the last one stays. Frames that come late catch up
+     * with a sound; without one what follows is as much later. */
+    at(seconds, audio) {
         const due = Math.floor(seconds / this.period + 1e-6) + 1;
         let underway = this.#stream.latency.delay;
         while (this.#shown < due) {
@@ -63,6 +64,7 @@ class StreamPlayer {
                 break;
             }
         }
+        if (!audio || audio.ended) this.#shown = due;
         return this.#frame;
     }
 
@@ -173,7 +175,17 @@ export class LabialMouth extends Base {
     }
 
     connectedCallback() {
+        for (const name of Object.keys(this)) { // properties that were set before the element was defined
+            if (!(name in Object.getPrototypeOf(this))) continue;
+            const value = this[name];
+            delete this[name];
+            this[name] = value;
+        }
         this.#ask();
+    }
+
+    adoptedCallback() {
+        adopt(this.shadowRoot, this.constructor.style);
     }
 
     disconnectedCallback() {
@@ -240,6 +252,7 @@ export class LabialMouth extends Base {
     }
 
     cancel(milliseconds = 200) {
+        if (!(milliseconds >= 0)) throw new TypeError("the milliseconds are no number from 0 on");
         if (this.#rest && !this.#player.speaks) return this.#rest.promise;
         this.audio?.pause();
         const eases = Boolean(this.#player?.cancel) && !this.#player.over();
@@ -266,7 +279,10 @@ export class LabialMouth extends Base {
         this.#position = 0;
         this.#over = false;
         this.#before = null;
-        if (!player) this.#halt();
+        if (!player) {
+            this.#halt();
+            if (this.#faps.some(Boolean)) this.show(new Float32Array(CHANNELS.length));
+        }
         this.#ask();
     }
 
@@ -292,7 +308,7 @@ export class LabialMouth extends Base {
         const audio = this.#rest ? null : this.audio;
         this.#position = this.#moment(audio, (now - (this.#before ?? now)) / 1000);
         this.#before = now;
-        this.show(player.at(this.#position));
+        this.show(player.at(this.#position, audio));
         const over = player.over(this.#position);
         if (over !== this.#over) {
             this.#over = over;
@@ -318,7 +334,7 @@ export class LabialMouth extends Base {
 
 /** Adds a style to a shadow root: a page may allow only style sheets of its own files, and scripts' sheets. */
 export function adopt(root, style) {
-    const sheet = new CSSStyleSheet();
+    const sheet = new (root.ownerDocument.defaultView ?? globalThis).CSSStyleSheet(); // another document takes no other
     sheet.replaceSync(style);
     root.adoptedStyleSheets = [...root.adoptedStyleSheets, sheet];
 }

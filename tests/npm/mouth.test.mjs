@@ -83,7 +83,7 @@ test("the element's types name what it has", () => {
     const types = readFileSync(`${folder}/labial-mouth.d.ts`, "utf8");
     const typed = new Set([...types.matchAll(/^    (?:get |set |readonly )?(\w+)[(:]/gm)].map(([, name]) => name));
     const own = Object.getOwnPropertyNames(LabialMouth.prototype);
-    const ours = own.filter((name) => !["constructor", "connectedCallback", "disconnectedCallback"].includes(name));
+    const ours = own.filter((name) => !["constructor", "adoptedCallback", "connectedCallback", "disconnectedCallback"].includes(name));
     assert.deepEqual([...typed].sort(), ours.sort());
 });
 
@@ -130,4 +130,26 @@ test("what is no avatar, and one that nothing is known of, is an error", () => {
     head.show({ beak: 0.5, tail: 1 });
     assert.deepEqual(head.meshes[0].morphTargetInfluences, [0, 0.5]);
     assert.throws(() => { head.source = {}; }, { name: "TypeError", message: /^the source is none/ });
+    const arkit = ["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"];
+    for (const output of ["arkitt", "oculus"]) {
+        assert.throws(() => attach(scene(arkit), { output }), { name: "LabialError", message: /^the avatar has none of the shapes/ });
+    }
+});
+
+test("a source that moves nothing of a head is an error", () => {
+    const head = attach(scene(["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"]));
+    const said = [{ start: 0, end: 1, label: "AA" }];
+    for (const output of ["faps", "vrm"]) {
+        assert.throws(() => { head.source = labial.render(said, { output }); },
+            { name: "TypeError", message: /^the source's output is (faps|vrm), and the head takes arkit/ });
+    }
+    head.source = labial.render(said, { output: "arkit" });
+    assert.throws(() => head.update(), { name: "TypeError", message: /head\.audio/ });
+});
+
+test("sides behind a dot are found, as Blender names them", () => {
+    const names = ["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose", "mouthSmile.L", "mouthSmile.R"];
+    const found = scene(names, names.map((name) => `Head.${name}`));
+    attach(found).show({ mouthSmileLeft: 0.25, mouthSmileRight: 0.5 });
+    for (const mesh of found.nodes) assert.deepEqual(mesh.morphTargetInfluences, [0, 0, 0, 0, 0.25, 0.5]);
 });

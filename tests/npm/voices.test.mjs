@@ -61,6 +61,21 @@ test("an answer of few messages that told no timings is named at its end, once",
     }
 });
 
+test("behind the end of an element's sound the lips come to rest", async () => {
+    const element = { currentTime: 0.5, ended: false, paused: false, readyState: 4, play: async () => {} };
+    const voice = await labial.voice({ clock: element });
+    voice.say("spa", 0.2, 0.6);
+    voice.finish();
+    assert.ok([...voice.at()].some((value) => Math.abs(value) > 100));
+    Object.assign(element, { currentTime: 0.6, ended: true });
+    const begin = performance.now();
+    while (!voice.done && performance.now() - begin < 5000) {
+        voice.at();
+        await new Promise((resolve) => setTimeout(resolve, 10));
+    }
+    assert.ok(voice.done && performance.now() - begin > 400 && [...voice.at()].every((value) => value === 0));
+});
+
 test("messages of another service than the first ones are told of once", async (context) => {
     const warn = context.mock.method(console, "warn", () => {});
     const first = { alignment: { chars: ["a"], charStartTimesMs: [0], charDurationsMs: [90] } };

@@ -357,6 +357,43 @@ def test_the_element_by_itself(browser: Browser, address: str) -> None:
         page.evaluate("face.stream = said({output: 'arkit'}); turn(0)")
 
 
+def test_late_phonemes_and_elements(browser: Browser, address: str) -> None:
+    """Phonemes that come after a stream was set are shown in their own time; a source that is taken away leaves no open
+    mouth; an element that is set before it is defined, or is moved to another document, works as others."""
+    page = opened(browser, address, CLOCK)
+    found = page.evaluate("""(async () => {
+      const {Labial} = await import("labial");
+      const {LabialMouth, define} = await import("labial/labial-mouth.js");
+      const labial = await Labial.load();
+      const stream = labial.stream();
+      face.audio = null;
+      face.stream = stream;
+      turn(0);
+      turn(2000);
+      for (const label of ["M", "AA", "M", "AA"]) stream.push(label, 400);
+      const numbers = [];
+      for (let i = 0; i < 40; i++) { turn(20); numbers.push(stream.number); }
+      const open = face.faps.some(value => Math.abs(value) > 100);
+      face.stream = null;
+      const rest = Array.from(face.faps);
+      const late = document.createElement("late-mouth"), track = labial.render([{start: 0, end: 1, label: "AA"}]);
+      late.track = track;
+      document.body.append(late);
+      define("late-mouth", class extends LabialMouth {});
+      const frame = document.createElement("iframe");
+      document.body.append(frame);
+      frame.contentDocument.body.append(late);
+      const sheets = late.shadowRoot.adoptedStyleSheets.map(sheet => sheet.cssRules.length);
+      let refused = "";
+      try { await late.cancel(NaN); } catch (error) { refused = error.message; }
+      return {numbers, open, rest, own: Object.keys(late), kept: late.track === track, sheets, refused};
+    })()""")
+    steps = np.diff([number for number in found["numbers"] if number >= 0])
+    assert steps.max() == 1 and len(steps) > 20 and found["open"] and found["rest"] == [0] * 13
+    assert found["own"] == [] and found["kept"] and len(found["sheets"]) == 1 and found["sheets"][0] > 0
+    assert "milliseconds" in found["refused"] and page.errors() == []
+
+
 def test_a_source_that_is_taken_away(browser: Browser, address: str) -> None:
     """Catches a mouth that draws on without a source, and one that then never draws again; and 120 taps in a row."""
     page = opened(browser, address, CLOCK)
@@ -376,7 +413,7 @@ def test_a_source_that_is_taken_away(browser: Browser, address: str) -> None:
       for (let i = 0; i < 120; i++) document.getElementById(["face", "speak", "stop"][i % 3]).click();
       return found;
     })()""")
-    assert drawn == [3, 0, 3, 3, 0, 3]
+    assert drawn == [3, 1, 3, 3, 1, 3]  # 1: at rest
     tap(page, "face")
     turn_until(page, "document.getElementById('face').stream")
     assert page.errors() == []

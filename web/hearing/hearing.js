@@ -223,6 +223,10 @@ export class Hearing extends EventTarget {
         return this.#ended && this.#number + 1 >= this.#count;
     }
 
+    get output() {
+        return this.#output;
+    }
+
     get context() {
         return this.#context;
     }

@@ -7,7 +7,7 @@ export function clockOf({ shown }, clock, context) {
     if (typeof clock === "function") return { read: () => clock() ?? null, anchored: false };
     if (typeof clock === "object") {
         if ("destination" in clock && "currentTime" in clock) return { read: () => heard(clock), anchored: true };
-        if ("play" in clock && "currentTime" in clock) return { read: () => played(clock), anchored: false };
+        if ("play" in clock && "currentTime" in clock) return { read: reader(clock), anchored: false };
         if ("getAudioTracks" in clock) {
             const own = context ?? new AudioContext();
             return { read: () => heard(own), anchored: true };
@@ -22,7 +22,14 @@ function heard(context) {
     return context.currentTime - (context.outputLatency || context.baseLatency || 0);
 }
 
-/** The time of an element that is heard now, for which the browser allows for the device. */
-function played(element) {
-    return element.currentTime === 0 && (element.paused || element.readyState < 3) ? null : element.currentTime;
+/** What tells the time of an element that is heard now, for which the browser allows for the device. Behind the sound's
+ * end time goes on, so that the lips come to rest. */
+function reader(element) {
+    let end = null; // when it had ended
+    return () => {
+        const { currentTime, ended, paused, readyState } = element;
+        end = ended ? end ?? Date.now() : null;
+        if (currentTime === 0 && (paused || readyState < 3)) return null;
+        return end === null ? currentTime : currentTime + (Date.now() - end) / 1000;
+    };
 }

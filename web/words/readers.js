@@ -19,8 +19,9 @@ export function readTimings(lexicon, source, { format = "auto", own, numbers, of
         segments = timings.segmentsOf(known(lexicon, name), entries, spoken);
     }
     if (!moved) return segments;
-    return segments.filter(({ end }) => end + moved > 0)
-        .map((one) => ({ ...one, start: Math.max(0, one.start + moved), end: one.end + moved }));
+    const left = segments.filter(({ end }) => end + moved > 0);
+    if (!left.length) throw new LabialError(`an offset of ${1000 * moved} ms leaves no segments`);
+    return left.map((one) => ({ ...one, start: Math.max(0, one.start + moved), end: one.end + moved }));
 }
 
 /** Reads messages one by one, as they arrive. */

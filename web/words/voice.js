@@ -236,6 +236,10 @@ export class Voice extends EventTarget {
         return this.#given;
     }
 
+    get output() {
+        return this.#output;
+    }
+
     get fps() {
         return this.#model.fps;
     }
