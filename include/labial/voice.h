@@ -57,7 +57,7 @@
 extern "C" {
 #endif
 
-/* Utterances that may be known at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 72 bytes. */
+/* Utterances that may be known at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 76 bytes. */
 #ifndef LABIAL_VOICE_UTTERANCES
 #define LABIAL_VOICE_UTTERANCES 8
 #endif
