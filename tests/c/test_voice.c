@@ -465,6 +465,11 @@ TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
     tell_one("M", 0, 500);
     assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
                                  "5200-5300 F, 6000-6500 M");
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 7000, 0), LABIAL_OK); /* nothing was told that could be moved */
+    tell_one("S", 0, 500);
+    assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
+                                 "5200-5300 F, 6000-6500 M, 7000-7500 S");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)
