@@ -135,10 +135,11 @@ static void place_utterance(labial_voice_t *voice, unsigned position, int64_t or
  * -1. */
 static int told_before(labial_voice_t *voice, uint64_t at)
 {
-    const unsigned last = voice->utterance_count - 1u;
     const labial_voice_utterance_t *utterance;
+    unsigned last;
     if (voice->utterance_count == 0u || at == LABIAL_VOICE_BEHIND)
         return -1;
+    last = voice->utterance_count - 1u;
     utterance = voice->utterances + last;
     if (!utterance->queued || utterance->identity || utterance->places == 0u)
         return -1;
