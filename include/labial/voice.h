@@ -201,9 +201,9 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 /*
  * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
  * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
- * message; that of an utterance that began by itself moves it to `at`. So does 0 where the last utterance has no
- * identity, began by itself, and would not be heard otherwise, or was told after labial_voice_finish() and is not over.
- * After a cancel, items count again from here on.
+ * message; that of an utterance that began by itself moves it to `at`. 0 does the same with the last utterance if that
+ * began by itself without an identity, and if nothing of it would be heard otherwise, or it was told after
+ * labial_voice_finish() and is not over. After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
@@ -277,8 +277,8 @@ struct labial_voice_place {
 struct labial_voice_utterance {
     int64_t origin;    /* milliseconds of the sound, from which its times count */
     int64_t limit;     /* where it ends at the latest */
-    uint64_t base;     /* microseconds, from which times of joined messages count; */
-    uint64_t told;     /* the end of all messages */
+    uint64_t base;     /* microseconds, from which times of joined messages count */
+    uint64_t told;     /* microseconds, the end of all messages */
     uint32_t identity; /* 0 while there is none */
     uint32_t first;    /* of its places */
     uint32_t places;   /* that its items take */
@@ -289,7 +289,7 @@ struct labial_voice_utterance {
     uint8_t kind;      /* that counts */
     uint8_t tail;      /* places of the last item */
     uint8_t queued;    /* it began by itself: behind the one before it */
-    uint8_t early;     /* so, behind labial_voice_finish(), and no message had an identity */
+    uint8_t early;     /* it was told after labial_voice_finish(), by a message without an identity */
     uint8_t joined;    /* its last message was */
 };
 

@@ -2,8 +2,8 @@
  * mouth.h - phonemes by name in, written frames out: what labial-say and the programs with a speech synthesiser share.
  *
  * A label that the model does not know never stops the mouth: it moves as the nearest phoneme does, and each such label
- * is named once on standard error; so is the first sound that is too long to be speech, and a
- * warning says where every sound is too short.
+ * is named once on standard error. So is the first sound that is too long to be speech, and whether every sound is too
+ * short.
  */
 #ifndef LABIAL_EXAMPLE_MOUTH_H
 #define LABIAL_EXAMPLE_MOUTH_H
