@@ -84,6 +84,22 @@ static void store(labial_t *stream, const labial_taken_t *taken)
     labial_articulation_step(&stream->articulation);
     if (taken->marks & LABIAL_BEGINS)
         stream->begins[0] |= 1u;
+    if (frame->contacts)
+        stream->touches[0] |= 1u;
+}
+
+/* Adds a tick to the age of every frame: bit i of `frames` is that of age i. */
+static void grow_older(uint32_t frames[LABIAL_DELAY_WORDS_])
+{
+    unsigned i;
+    for (i = LABIAL_DELAY_WORDS_; --i > 0;)
+        frames[i] = frames[i] << 1 | frames[i - 1u] >> 31;
+    frames[0] <<= 1;
+}
+
+static int is_among(const uint32_t frames[LABIAL_DELAY_WORDS_], unsigned age)
+{
+    return (int)(frames[age / 32u] >> (age % 32u) & 1u);
 }
 
 /*
@@ -95,14 +111,11 @@ static void store(labial_t *stream, const labial_taken_t *taken)
 static int take_frame(labial_t *stream)
 {
     labial_taken_t taken;
-    unsigned i;
-    int result;
-    result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
+    const int result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
     if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
         return result;
-    for (i = LABIAL_BEGINS_WORDS_; --i > 0;)
-        stream->begins[i] = stream->begins[i] << 1 | stream->begins[i - 1u] >> 31;
-    stream->begins[0] <<= 1;
+    grow_older(stream->begins);
+    grow_older(stream->touches);
     if (result == LABIAL_OK)
         store(stream, &taken);
     else
@@ -123,15 +136,30 @@ static void call_back(labial_t *stream, unsigned counts)
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
+/* Steps of the way to motion that begins anew with the frame that is due. Where the face is not at rest and lips meet
+ * before the way's usual end, it ends with the second frame of their contact. */
+static unsigned steps_of_way(const labial_t *stream)
+{
+    unsigned step, age = LABIAL_DELAY(stream->channels.stride);
+    if (labial_fade_rests(&stream->fade))
+        return LABIAL_FADE_STEPS;
+    for (step = 1; step < LABIAL_FADE_STEPS; step++) {
+        if (is_among(stream->touches, age))
+            return step + 1u;
+        if (age-- == 0 || is_among(stream->begins, age))
+            break;
+    }
+    return LABIAL_FADE_STEPS;
+}
+
 /* Makes the frame that is due the pose to deliver; returns whether one is due. */
 static int deliver(labial_t *stream)
 {
-    const unsigned delay = LABIAL_DELAY(stream->channels.stride);
     int16_t motion[LABIAL_CHANNELS];
     if (!labial_channels_due(&stream->channels, stream->models, motion))
         return 0;
-    if (stream->resting || (stream->begins[delay / 32u] >> (delay % 32u) & 1u))
-        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
+    if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride)))
+        labial_fade_begin(&stream->fade, steps_of_way(stream), !stream->resting);
     labial_fade_to(&stream->fade, motion);
     stream->pending--;
     stream->resting = stream->held = 0;

@@ -161,7 +161,7 @@ typedef struct {
 } labial_articulation_t;
 
 #define LABIAL_MAGIC_ 0x4c41424cu /* "LABL" */
-#define LABIAL_BEGINS_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
+#define LABIAL_DELAY_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
 typedef struct {
@@ -175,9 +175,10 @@ typedef struct {
     labial_articulation_t articulation;
     uint32_t frame;   /* number of the next frame */
     uint32_t pending; /* frames pushed and not yet delivered */
-    uint32_t
-        begins[LABIAL_BEGINS_WORDS_]; /* bit i: a solution begins with the frame that was taken i ticks ago; what was
-                                            * taken before a cancel moves beyond the delay before a frame is due */
+    /* Bit i is that of the frame that was taken i ticks ago; what was taken before a cancel moves beyond the delay before
+     * a frame is due. */
+    uint32_t begins[LABIAL_DELAY_WORDS_];  /* a solution begins with the frame */
+    uint32_t touches[LABIAL_DELAY_WORDS_]; /* a channel is in contact */
     labial_channels_t channels;
     const labial_model_t *models[LABIAL_MODELS];
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);

@@ -3,6 +3,7 @@
  */
 #include "oracle.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -196,18 +197,35 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
     free(gain);
 }
 
-/* Frame j of a fade, from `held`, which moves on by `pace` / 2, / 4, ... */
-static double faded(double fresh, double held, double pace, unsigned j)
+/* Step j of a fade of `length`, from `held`, which moves on by `pace` / 2, / 4, ... */
+static double faded(double fresh, double held, double pace, unsigned j, unsigned length)
 {
-    const double s = j / (FADE + 1.0), share = s * s * (3.0 - 2.0 * s);
+    const double s = (double)j / length, share = s * s * (3.0 - 2.0 * s);
     const double base = held + pace * (1.0 - 1.0 / (double)(1u << j));
     return base + (fresh - base) * share;
+}
+
+/* Steps of the fade from `held` to the solution that begins with frame `t`: until the second frame in contact, as far as
+ * contacts are known when the frame is delivered, unless the face is at rest or this is no sooner. */
+static unsigned fade_length(const stream_t *stream, size_t t, const double *held)
+{
+    const size_t known = LABIAL_DELAY(stream->models[0]->search_stride);
+    int is_at_rest = 1;
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+        is_at_rest = is_at_rest && fabs(held[c]) <= 128.0;
+    for (size_t k = 0; !is_at_rest && k < FADE && k <= known && t + k < stream->count; k++) {
+        if (k > 0 && stream->frames[t + k].begins)
+            break;
+        if (stream->contacts[t + k])
+            return (unsigned)k + 2u;
+    }
+    return FADE + 1u;
 }
 
 static void fade(const stream_t *stream, const double *pose, double (*motion)[LABIAL_CHANNELS])
 {
     double held[LABIAL_CHANNELS] = { 0 }, pace[LABIAL_CHANNELS] = { 0 };
-    unsigned j = 0;
+    unsigned j = 0, length = 0;
     int is_paced = 0; /* neither of the two frames before is missing, and the later one did not fade */
     for (size_t t = 0; t < stream->count; t++) {
         if (stream->frames[t].begins) {
@@ -215,12 +233,13 @@ static void fade(const stream_t *stream, const double *pose, double (*motion)[LA
                 held[c] = t > 0 ? motion[t - 1][c] : pose ? pose[c] : 0.0;
                 pace[c] = is_paced ? held[c] - motion[t - 2][c] : 0.0;
             }
+            length = fade_length(stream, t, held);
             j = 1;
         }
         for (unsigned c = 0; j > 0 && c < LABIAL_CHANNELS; c++)
-            motion[t][c] = limited(faded(motion[t][c], held[c], pace[c], j));
+            motion[t][c] = limited(faded(motion[t][c], held[c], pace[c], j, length));
         is_paced = t > 0 && j == 0;
-        j = j > 0 && j < FADE ? j + 1 : 0;
+        j = j > 0 && j + 1 < length ? j + 1 : 0;
     }
 }
 

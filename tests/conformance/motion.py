@@ -10,7 +10,7 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 
 from labial.files.faps import CHANNELS
-from labial.reference.fade import FADE, eased, faded, rests
+from labial.reference.fade import eased, faded, rests, way_length
 from labial.reference.stream import aims, gains, solution
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
@@ -58,7 +58,8 @@ def part_motion(
 ) -> np.ndarray:
     """(T, 13) float64, FAP: the frames of one part up to its end or cancel, without the way to rest. `held` (13,) is
     the pose from which it fades in; `percent` the articulation that it begins with; `limits` are the
-    `window`, `lag` and `searched` of a library that is built for others."""
+    `window`, `lag` and `searched` of a library that is built for others. A contact is known as far ahead as a frame
+    that is taken in waits for its delivery."""
     motion = np.zeros((0, CHANNELS))
     faded_until = 0  # the frame behind the last that a fade has touched
     own_runs = runs(part.pushes, tables["speech"].fps)
@@ -68,11 +69,15 @@ def part_motion(
     for run, end in zip(own_runs, until):
         own = tables[run.model]
         articulated = gain[run.begin : end, : len(own.solved)]
-        fresh = solution(own, *aims(own, run.phonemes, run.counts), articulated, begin=run.begin, **limits)
+        target, contact, ends = aims(own, run.phonemes, run.counts)
+        fresh = solution(own, target, contact, ends, articulated, begin=run.begin, **limits)
         stands = run.begin < 2 or run.begin <= faded_until
         moved = np.zeros(CHANNELS) if stands else motion[-1] - motion[-2]
-        fresh = faded(motion[-1] if run.begin else held, moved, fresh)
-        faded_until = run.begin + FADE
+        pose = motion[-1] if run.begin else held
+        delay = limits.get("window", WINDOW) + limits.get("lag", LAG) + own.stride
+        length = way_length(pose, contact[: delay + 1].any(axis=1))
+        fresh = faded(pose, moved, fresh, length=length)
+        faded_until = run.begin + length - 1
         motion = np.concatenate([motion, fresh])
     return motion[: part.cancel[0]] if part.cancel else motion
 

@@ -23,6 +23,7 @@ static void any_stream(labial_t *stream, int16_t *user)
     stream->resting = (uint8_t)Frama_C_interval(0, 1);
     stream->held = (uint8_t)Frama_C_interval(0, LABIAL_HOLD_TICKS);
     FILL(stream->begins);
+    FILL(stream->touches);
     stream->frame = any_uint32;
     stream->pending = any_uint32;
     stream->callback = on_frame;

@@ -50,8 +50,21 @@ def test_the_ways_by_hand() -> None:
         assert np.allclose(found[j - 1], 100 - 60 * (3 * s**2 - 2 * s**3))
     moving = fade.faded(held, np.full(13, 32.0), np.full((3, 13), 132.0))
     assert np.allclose(moving[0], 116 + (132 - 116) * 25 / 729) and moving[2].max() < 132
+    hurried = fade.faded(held, np.zeros(13), fresh, length=3)
+    assert np.allclose(hurried[0], 100 - 60 * 7 / 27) and np.allclose(hurried[1], 100 - 60 * 20 / 27)
+    assert np.allclose(hurried[2:], fresh[2:])
     way = fade.eased(held)
     assert len(way) == 12 and not way[-1].any() and np.allclose(way[5], 50) and np.allclose(way[2], 100 * (1 - 10 / 64))
+
+
+@pytest.mark.parametrize("pose, touching, length", [
+    (8.0, [0, 1], 9), (8.1, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9), (100.0, [], 9),
+])
+def test_a_contact_hurries_the_way(pose: float, touching: List[int], length: int) -> None:
+    """From a face that is not at rest the motion is reached with the second frame of the first contact."""
+    held, contact = np.zeros(13), np.zeros(12, dtype=bool)
+    held[4], contact[touching] = pose, True
+    assert fade.way_length(held, contact) == length
 
 
 def test_what_is_delivered_does_not_depend_on_the_parts() -> None:

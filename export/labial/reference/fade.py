@@ -9,7 +9,7 @@ import numpy as np
 
 from labial.files.faps import CHANNELS
 
-#: Frames over which motion that begins anew fades in.
+#: Frames over which motion that begins anew fades in, unless a contact hurries it.
 FADE = 8
 #: Frames in which a face comes to rest, LABIAL_EASE_FRAMES.
 EASE = 12
@@ -23,12 +23,20 @@ def smooth(way: np.ndarray) -> np.ndarray:
     return result
 
 
-def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0) -> np.ndarray:
-    """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before, the first FADE of which fade in
-    from the pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far with each frame."""
+def way_length(held: np.ndarray, contact: np.ndarray) -> int:
+    """Steps from the pose `held` (13,) to motion that begins anew, the frames of which are in contact as `contact` (T,)
+    says. Where the face is not at rest, it is there with the second frame of the first contact."""
+    touching = np.flatnonzero(contact[:FADE])
+    return FADE + 1 if rests(held) or not len(touching) else int(touching[0]) + 2
+
+
+def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, length: int = FADE + 1) -> np.ndarray:
+    """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before. The first ones fade in, in
+    `length` steps, from the pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far
+    with each frame."""
     steps = np.arange(step + 1, step + len(fresh) + 1)
     base = held + moved * (1.0 - 0.5 ** np.minimum(steps, FADE)[:, None])
-    result: np.ndarray = np.where(steps[:, None] > FADE, fresh, base + (fresh - base) * smooth(steps / (FADE + 1.0)))
+    result: np.ndarray = np.where(steps[:, None] >= length, fresh, base + (fresh - base) * smooth(steps / length))
     return result
 
 
