@@ -118,15 +118,18 @@ static int hear_at_rate(labial_hear_t *hear, int32_t sample)
     return 1;
 }
 
-/* Hears what is still to come when the sound is over. */
+/* Hears what is still to come when the sound is over. The last sample stays: an offset does not end with a step. */
 static int hear_rest(labial_hear_t *hear)
 {
+    const int32_t last = labial_hear_convert_last(&hear->convert);
+    int16_t silence;
     unsigned i;
     for (i = hear->convert.reach; i > 0; i--)
-        if (!hear_at_rate(hear, 0))
+        if (!hear_at_rate(hear, last))
             return 0;
+    silence = labial_hear_features_last(&hear->features);
     while (hear->sounding > 0) /* silence fills a frame that has begun, and follows it */
-        if (!hear_sample(hear, 0))
+        if (!hear_sample(hear, silence))
             return 0;
     return tell_class(hear);
 }

@@ -6,8 +6,6 @@
  */
 #include "hear_convert.h"
 
-#include <string.h>
-
 #include "fixed.h"
 #include "hear_convert_table.h"
 
@@ -29,8 +27,7 @@ void labial_hear_convert_reset(labial_hear_convert_t *convert)
 {
     /* The first converted sample has the time of the first sample, and is known when `reach` others have followed. */
     convert->phase = (uint16_t)((convert->reach + 1u) * convert->spacing * 10u);
-    convert->at = 0;
-    memset(convert->past, 0, sizeof convert->past);
+    convert->at = LABIAL_HEAR_TAPS_;
 }
 
 /* The sound at the phase after `left`, the latest sample of the filter's left half. */
@@ -54,7 +51,12 @@ static int16_t interpolated(const labial_hear_convert_t *convert, const int16_t 
 unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int16_t out[LABIAL_HEAR_CONVERTED_MAX])
 {
     const unsigned stride = convert->spacing * 10u;
-    unsigned count = 0;
+    unsigned i, count = 0;
+    if (convert->at == LABIAL_HEAR_TAPS_) { /* the first sample */
+        for (i = 0; i < 2u * LABIAL_HEAR_TAPS_; i++)
+            convert->past[i] = (int16_t)sample;
+        convert->at = 0;
+    }
     convert->past[convert->at] = convert->past[convert->at + LABIAL_HEAR_TAPS_] = (int16_t)sample;
     convert->at = (uint8_t)((convert->at + 1u) % LABIAL_HEAR_TAPS_);
     for (convert->phase = (uint16_t)(convert->phase - stride); convert->phase < stride;

@@ -268,16 +268,20 @@ static int is_silent(const int16_t *window)
 void labial_hear_features_reset(labial_hear_features_t *features)
 {
     features->hop = 0;
-    features->filled = LABIAL_HEAR_SHARED;
+    features->filled = 0;
     labial_hear_level_wait(&features->level);
-    memset(features->tail, 0, sizeof features->tail);
 }
 
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
 {
     int16_t *const window = features->window;
+    unsigned i;
     int silent;
-    if (features->filled == LABIAL_HEAR_SHARED) {
+    if (features->filled <= LABIAL_HEAR_SHARED) {
+        if (features->filled == 0) /* the first sample */
+            for (i = 0; i < LABIAL_HEAR_SHARED; i++)
+                features->tail[i] = sample;
+        features->filled = LABIAL_HEAR_SHARED;
         memcpy(window, features->tail, sizeof features->tail);
         features->loud &= features->hop;
     }

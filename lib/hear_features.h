@@ -13,13 +13,20 @@
 /* Samples that a window shares with the next one. */
 #define LABIAL_HEAR_SHARED (LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_)
 
-/* Begins a sound with silence before it. The level stays, and the sound waits for a voice. */
+/* Begins a sound, with its first sample as the silence before it. The level stays, and the sound waits for a voice. */
 void labial_hear_features_reset(labial_hear_features_t *features);
 
 /* Whether the next sample is not the first one of a frame. */
 static inline int labial_hear_features_begun(const labial_hear_features_t *features)
 {
     return features->hop != 0 || features->filled > LABIAL_HEAR_SHARED;
+}
+
+/* The last sample that was taken; any if none was. */
+static inline int16_t labial_hear_features_last(const labial_hear_features_t *features)
+{
+    return features->filled > LABIAL_HEAR_SHARED ? features->window[features->filled - 1u]
+                                                 : features->tail[LABIAL_HEAR_SHARED - 1];
 }
 
 /* Takes a sample. Returns whether it completes a frame: then `bands` and `loud` are the frame's, and the window is free

@@ -17,7 +17,8 @@
  *
  * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. A stream
  * begins and ends with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140
- * ms. So is steady noise before the first word, unless it is as loud as a voice.
+ * ms. So is steady noise before the first word, unless it is as loud as a voice. A constant offset of the samples is not
+ * heard, neither where a sound begins nor where it ends; a step of it in between is.
  *
  * Like the stream of phonemes (labial/labial.h) it never allocates, keeps no state outside `hear` and `workspace`,
  * computes in integers only and gives the same bits on every target and for blocks of any length. Calls on one stream
@@ -102,9 +103,10 @@ int labial_hear_visemes(const labial_hear_t *hear, const uint8_t *visemes, uint8
 int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count);
 
 /*
- * No more sound will come: delivers all frames that are still to come, as if silence followed. A frame that the sound
- * fills in part is the last one; after it the face comes to rest in LABIAL_EASE_FRAMES more, unless no channel is farther
- * than 8 FAP units from it already. The callback receives all of them during the call; a program shows one every 20 ms.
+ * No more sound will come: delivers all frames that are still to come, as if the last sample stayed. A frame that the
+ * sound fills in part is the last one; after it the face comes to rest in LABIAL_EASE_FRAMES more, unless no channel is
+ * farther than 8 FAP units from it already. The callback receives all of them during the call; a program shows one every
+ * 20 ms.
  *
  * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */

@@ -23,7 +23,7 @@
 typedef struct {
     uint8_t reach;   /* samples that the filter takes on each side; 0 for 16 kHz, which is not converted */
     uint8_t spacing; /* points from one sample to the next */
-    uint8_t at;      /* where the next sample goes */
+    uint8_t at;      /* where the next sample goes; LABIAL_HEAR_TAPS_ before the first one */
     uint16_t step;   /* from one converted sample to the next */
     uint16_t phase;  /* from the latest sample of the filter's left half to the next converted sample */
     int16_t past[2 * LABIAL_HEAR_TAPS_]; /* every sample twice, so that the latest are always in one piece */
@@ -41,7 +41,7 @@ typedef struct {
 typedef struct {
     uint8_t hop;     /* 1 in the second half of a frame */
     uint8_t loud;    /* the frame has sound that is a voice */
-    uint16_t filled; /* samples of the window */
+    uint16_t filled; /* samples of the window; 0 before the first one */
     labial_hear_level_t level;
     int16_t bands[LABIAL_HEAR_INPUTS];                    /* features of the frame, Q9 */
     int16_t tail[LABIAL_HEAR_WINDOW_ - LABIAL_HEAR_HOP_]; /* samples that a window shares with the next one */

@@ -344,6 +344,91 @@ TEST(silence_is_rest)
     }
 }
 
+/* Moves the samples by a constant. */
+static void add_offset(uint32_t count, int offset)
+{
+    uint32_t i;
+    for (i = 0; i < count; i++)
+        samples[i] = (int16_t)(samples[i] + offset);
+}
+
+/* Would catch an offset, such as a microphone's, that is heard where a sound begins or ends: after labial_hear_init(),
+ * the end, a cancel and a restart, at any rate and wherever a hop ends. */
+TEST(an_offset_is_silence_at_either_end)
+{
+    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
+    static const int offsets[] = { 1000, -3300, 9830 };
+    unsigned i, o, f, k, round;
+    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
+        for (o = 0; o < sizeof offsets / sizeof offsets[0]; o++) {
+            const uint32_t silence = rates[i] * 2u / 5u + 37u * o, voice = rates[i] / 10u;
+            begin(rates[i], 1);
+            for (round = 0; round < 4u; round++) {
+                unsigned before = frame_count, moved = 0;
+                memset(samples, 0, silence * sizeof *samples);
+                add_offset(silence, offsets[o]);
+                push_in_blocks(silence, 1, 1000);
+                if (round == 1u)
+                    assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
+                else
+                    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+                for (f = before; f < frame_count; f++)
+                    for (k = 0; k < LABIAL_CHANNELS; k++)
+                        assert_int_equal(told[f][k], 0);
+                assert_true(frame_count >= before + 20u);
+                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                before = frame_count; /* and behind a voice, which is noise */
+                make_sound(3, voice, 1);
+                for (f = 0; f < voice; f++)
+                    samples[f] = (int16_t)(samples[f] / 4);
+                memset(samples + voice, 0, silence * sizeof *samples);
+                add_offset(voice + silence, offsets[o]);
+                push_in_blocks(voice + silence, 1, 777);
+                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+                for (f = before; f < before + 6u; f++)
+                    for (k = 0; k < LABIAL_CHANNELS; k++)
+                        moved += told[f][k] != 0;
+                assert_true(moved > 10u);
+                for (f = before + 16u; f < frame_count; f++)
+                    for (k = 0; k < LABIAL_CHANNELS; k++)
+                        assert_int_equal(told[f][k], 0);
+                assert_true(frame_count > before + 20u && frame_count < before + 28u); /* at rest: no way there */
+                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+            }
+        }
+}
+
+/* Would catch an offset that changes a single frame at 16 kHz, where nothing is rounded. */
+TEST(an_offset_changes_no_frame)
+{
+    static int16_t plain[FRAMES][LABIAL_CHANNELS];
+    unsigned count = 0, round, i;
+    int offset;
+    for (offset = 0; offset <= 9830; offset += 983) {
+        begin(16000, 1);
+        for (round = 0; round < 3u; round++) {
+            const uint32_t length = 7000u + 133u * round;
+            make_sound(5, length + 3000u, 1);
+            for (i = 0; i < length; i++)
+                samples[i] = (int16_t)(samples[i + 3000u] / 2);
+            add_offset(length, offset);
+            push_in_blocks(length, 1, 500);
+            if (round == 1u)
+                assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
+            else
+                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+            assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+        }
+        if (offset == 0) {
+            count = frame_count;
+            memcpy(plain, told, sizeof plain);
+        }
+        assert_int_equal(frame_count, count);
+        assert_memory_equal(told, plain, count * sizeof plain[0]);
+    }
+    assert_true(count > 60u);
+}
+
 /* Would catch a jump of the lips, or frames after the neutral one. */
 TEST(a_cancel_eases_to_the_neutral_face)
 {

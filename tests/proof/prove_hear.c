@@ -28,8 +28,7 @@ int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t samples_pe
 void labial_hear_convert_reset(labial_hear_convert_t *convert)
 {
     convert->phase = any_uint16;
-    convert->at = 0;
-    FILL(convert->past);
+    convert->at = LABIAL_HEAR_TAPS_;
 }
 
 unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int16_t out[LABIAL_HEAR_CONVERTED_MAX])
@@ -37,6 +36,7 @@ unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int
     /*@ assert -32768 <= sample <= 32767; */
     convert->past[0] = (int16_t)sample;
     convert->past[2 * LABIAL_HEAR_TAPS_ - 1] = (int16_t)sample;
+    convert->at = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_TAPS_ - 1);
     out[0] = any_int16;
     out[LABIAL_HEAR_CONVERTED_MAX - 1] = any_int16;
     return (unsigned)Frama_C_interval(0, LABIAL_HEAR_CONVERTED_MAX);
@@ -45,7 +45,7 @@ unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int
 void labial_hear_features_reset(labial_hear_features_t *features)
 {
     features->hop = 0;
-    features->filled = LABIAL_HEAR_SHARED;
+    features->filled = 0;
 }
 
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
@@ -132,7 +132,8 @@ static void any_state(void)
     hear.features.loud = (uint8_t)Frama_C_interval(0, 1);
     hear.features.level.level =
         Frama_C_interval(LABIAL_HEAR_LEVEL_MIN / 256 * LABIAL_HEAR_LEVEL_ONE, 46 * LABIAL_HEAR_LEVEL_ONE);
-    hear.features.filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
+    hear.features.filled = (uint16_t)Frama_C_interval(0, LABIAL_HEAR_WINDOW_ - 1);
+    hear.convert.at = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_TAPS_);
     hear.ended = (uint8_t)Frama_C_interval(0, 1);
     hear.busy = (uint8_t)Frama_C_interval(0, 1);
     hear.exact = (uint8_t)Frama_C_interval(0, 1);
@@ -149,7 +150,9 @@ static void any_state(void)
     hear.first = any_uint32;
     hear.class_callback = OR_NULL(labial_hear_class_fn, on_class);
     FILL(hear.fade.pose);
+    FILL(hear.convert.past);
     FILL(hear.features.bands);
+    FILL(hear.features.tail);
     FILL(hear.features.window);
 }
 

@@ -1,6 +1,6 @@
 /*
- * Any rate; for each that there is, any samples, at any place of the ring and at every phase: those of one distance from
- * the grid together, so that the filter's magnitudes add up to what they are.
+ * Any rate; for each that there is, any samples, the first one and others at any place of the ring, at every phase:
+ * those of one distance from the grid together, so that the filter's magnitudes add up to what they are.
  */
 #include "hear_convert.h"
 
@@ -13,7 +13,8 @@ static int16_t out[LABIAL_HEAR_CONVERTED_MAX];
 static void take(unsigned least, unsigned most)
 {
     FILL(convert.past);
-    convert.at = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_TAPS_ - 1);
+    convert.at = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_TAPS_);
+    labial_hear_convert_last(&convert);
     convert.phase = (uint16_t)Frama_C_interval((int)least, (int)most);
     labial_hear_convert(&convert, any_int16, out);
 }

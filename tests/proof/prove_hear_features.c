@@ -1,5 +1,5 @@
 /*
- * Any window of samples and any level that a stream can have; any sample at any place of a window.
+ * Any window of samples and any level that a stream can have; any sample, the first one or at any place of a window.
  */
 #include "hear_features.h"
 
@@ -25,9 +25,12 @@ int main(void)
     FILL(stream.window);
     FILL(stream.tail);
     stream.hop = (uint8_t)Frama_C_interval(0, 1);
-    stream.filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
     any_level(&stream.level);
+    labial_hear_features_last(&stream);
+    labial_hear_features_take(&stream, any_int16); /* the first one */
+    stream.filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
     labial_hear_features_begun(&stream);
+    labial_hear_features_last(&stream);
     labial_hear_features_take(&stream, any_int16);
     return 0;
 }

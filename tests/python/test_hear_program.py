@@ -326,6 +326,22 @@ def test_hostile_files_are_refused(data: bytes, told: str, tmp_path: Path) -> No
     assert hear(str(path), "--to", "fap").stdout == b"", "a part of the motion under a header of its own"
 
 
+@pytest.mark.parametrize("name", [b"RF64", b"BW64"])
+def test_files_beyond_4_gb_are_refused(name: bytes, tmp_path: Path) -> None:
+    """Catches a header of 64-bit sizes that is heard as samples, from a file and from standard input; the name alone is
+    no header."""
+    sizes = chunk(b"ds64", struct.pack("<QQQI", 72 + 2 * len(SOUND), 2 * len(SOUND), len(SOUND), 0))
+    data = name + b"\xff\xff\xff\xffWAVE" + sizes + form() + chunk(b"data", pcm(SOUND), 0xFFFFFFFF)
+    path = tmp_path / "large.wav"
+    path.write_bytes(data)
+    for done, told in ((hear(str(path)), str(path)), (hear("-", data=data), "standard input")):
+        assert done.returncode == 1 and done.stdout == b""
+        assert done.stderr.decode() == (f"labial-hear: {told}: is an RF64 or BW64 file; convert it to a WAV file of "
+                                        "less than 4 GB\n")
+    samples = name + pcm(SOUND)
+    assert motion(hear("-", data=samples)) == wanted(np.frombuffer(samples, "<i2"))
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_any_bytes_are_survived(seed: int, tmp_path: Path) -> None:
     """Catches headers that end the program: bytes changed, and the end cut off."""

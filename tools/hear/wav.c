@@ -173,6 +173,15 @@ static int read_head(wav_t *wav, FILE *in)
     return wav->last == WAV_HEAD && memcmp(wav->head, "RIFF", 4) == 0 && memcmp(wav->head + 8, "WAVE", 4) == 0;
 }
 
+/* Whether the first bytes are those of a file whose sizes have 64 bits, for sounds beyond 4 GB. */
+static int has_wide_sizes(const wav_t *wav)
+{
+    return wav->last == WAV_HEAD && memcmp(wav->head + 8, "WAVE", 4) == 0 &&
+           (memcmp(wav->head, "RF64", 4) == 0 || memcmp(wav->head, "BW64", 4) == 0);
+}
+
+static const char wide_sizes[] = "is an RF64 or BW64 file; convert it to a WAV file of less than 4 GB";
+
 /* Reads the chunks behind the first bytes. */
 static int read_chunks(wav_t *wav)
 {
@@ -198,13 +207,17 @@ static int read_chunks(wav_t *wav)
 
 int wav_open(wav_t *wav, FILE *in)
 {
-    return read_head(wav, in) ? read_chunks(wav) : failed(wav, "is not a WAV file");
+    if (read_head(wav, in))
+        return read_chunks(wav);
+    return failed(wav, has_wide_sizes(wav) ? wide_sizes : "is not a WAV file");
 }
 
 int wav_open_or_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
 {
     if (read_head(wav, in))
         return read_chunks(wav);
+    if (has_wide_sizes(wav))
+        return failed(wav, wide_sizes);
     wav->rate = rate;
     wav->channels = channels;
     wav->bytes = 2;

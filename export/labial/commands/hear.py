@@ -209,7 +209,7 @@ def _piped(rate: int, channels: int) -> Tuple[int, int, Iterator[bytes]]:
         raise LabialError("standard input is closed")
     head = sys.stdin.buffer.read(_HEAD)
     sound = _Joined(head, sys.stdin.buffer)
-    if head[:4] not in (b"RIFF", b"RF64") or head[8:] != b"WAVE":
+    if head[:4] not in (b"RIFF", b"RF64", b"BW64") or head[8:] != b"WAVE":
         return rate, channels, iter(lambda: sound.read(_BLOCK), b"")
     with suppress(*wav.ERRORS):
         file = wave.open(cast(BinaryIO, sound))

@@ -39,12 +39,23 @@ FINE = 16
 
 
 def taps() -> np.ndarray:
-    """(289,) the filter from its middle on; those at distances of 16 points, on both sides, add up to one."""
-    at = np.arange(POINTS + BEYOND)
-    window = np.i0(BETA * np.sqrt(np.maximum(1.0 - (at / POINTS) ** 2, 0.0))) / np.i0(BETA)
+    """(289,) the filter from its middle on. Those at distances of 16 points, on both sides, add up to one, wherever
+    they begin; those of the wider spacings do so in proportion. So a constant stays one."""
+    at = np.arange(1 - POINTS, POINTS)
+    window = np.i0(BETA * np.sqrt(1.0 - (at / POINTS) ** 2)) / np.i0(BETA)
     width = 2 * CUTOFF / (48000 * FINE)
-    result: np.ndarray = np.where(at < POINTS, FINE * width * np.sinc(width * at) * window, 0.0)
-    return result
+    whole = width * np.sinc(width * at) * window
+    for _ in range(20):
+        for spacing in (48, 32):  # those of 24 and 16 are sums of these
+            for first in range(spacing):
+                whole[first::spacing] *= FINE / spacing / whole[first::spacing].sum()
+    return np.pad(whole[POINTS - 1 :], (0, BEYOND))
+
+
+def extended(sound: np.ndarray, before: int, after: int) -> np.ndarray:
+    """A sound (N,) whose first sample stays for `before` samples before it, and the last one for `after` behind it, so
+    that an offset has no step at its ends. Zeros where there is no sample."""
+    return np.pad(sound, (before, after), mode="edge" if len(sound) else "constant")
 
 
 def converted_count(samples: int, rate: int) -> int:
@@ -54,8 +65,8 @@ def converted_count(samples: int, rate: int) -> int:
 
 
 def convert(sound: np.ndarray, rate: int) -> np.ndarray:
-    """(M,) float64, a sound (N,) at `rate` as one at 16 kHz, without limits; zeros before it and after it. Raises
-    KeyError for a rate that is not one of `RATES`."""
+    """(M,) float64, a sound (N,) at `rate` as one at 16 kHz, without limits; before it and after it, its first and its
+    last sample stay (:func:`extended`). Raises KeyError for a rate that is not one of `RATES`."""
     sound = np.asarray(sound, dtype=np.float64)
     way = RATES[rate]
     if way.stride == way.step:
@@ -63,7 +74,7 @@ def convert(sound: np.ndarray, rate: int) -> np.ndarray:
     place = np.arange(converted_count(len(sound), rate)) * way.step
     left, rest = np.divmod(place, way.stride)
     filter_, spacing = taps(), way.stride // 10
-    padded = np.pad(sound, way.reach)
+    padded = extended(sound, way.reach, way.reach)
     result = np.zeros(len(place))
     distance = (rest + 5) // 10
     for k in range(way.reach):

@@ -4,7 +4,8 @@
 its end alone.
 
 - A window of 256 samples, Hann's, ends with each hop of 160. The window is the periodic one: an offset reaches only the
-  bins up to 62.5 Hz, of which no band has a share.
+  bins up to 62.5 Hz, of which no band has a share. Before its first sample and behind its last one, a sound stays at
+  these, so that an offset does not sound at its ends either.
 - The energies |X|^2 of the bins add up to those of `BANDS` bands, triangles that are evenly spaced on the mel scale.
   Samples count as int16, so that full scale is 32768.
 - The level is the mean of the bands' log2 energies. It follows a rise at once and falls by `DECAY` for each hop, but
@@ -23,6 +24,8 @@ from __future__ import annotations
 from typing import List
 
 import numpy as np
+
+from labial.hearing.convert import extended
 
 #: Samples per second of the sound that the network hears.
 RATE = 16000
@@ -88,12 +91,11 @@ _BLOCK = 4096
 
 def log_energies(sound: np.ndarray) -> np.ndarray:
     """(2 T, 24) float32 log2 energies of the bands in each hop of a sound: (N,) samples at `RATE`, int16 or floats of
-    the same scale. Zeros precede the sound and fill its last frame: T is `frames_of(N)`."""
+    the same scale. Its first sample precedes it and its last one fills its last frame: T is `frames_of(N)`."""
     sound = np.asarray(sound)
     count = HOPS * frames_of(len(sound))
     before = WINDOW - HOP
-    padded = np.zeros(before + count * HOP, dtype=np.float32)
-    padded[before : before + len(sound)] = sound
+    padded = extended(sound.astype(np.float32), before, count * HOP - len(sound))
     shape, weights = window().astype(np.float32), triangles().astype(np.float32)
     rows: List[np.ndarray] = [np.zeros((0, BANDS), dtype=np.float32)]
     for first in range(0, count, _BLOCK):

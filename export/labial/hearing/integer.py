@@ -10,7 +10,7 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
-from labial.hearing.convert import RATES, converted_count, mixed, taps
+from labial.hearing.convert import RATES, converted_count, extended, mixed, taps
 from labial.hearing.features import (
     BANDS,
     DECAY,
@@ -89,7 +89,7 @@ def convert(sound: np.ndarray, rate: int) -> np.ndarray:
         return samples
     left, rest = np.divmod(np.arange(converted_count(len(samples), rate)) * way.step, way.stride)
     distance, spacing, table = (rest + 5) // 10, way.stride // 10, tap_table()
-    padded = np.pad(samples, way.reach)
+    padded = extended(samples, way.reach, way.reach)
     total = np.zeros(len(left), dtype=np.int64)
     for k in range(way.reach):
         total += padded[left + way.reach - k] * table[distance + k * spacing]
@@ -150,8 +150,7 @@ def _log2(value: np.ndarray) -> np.ndarray:
 def log_energies(sound: np.ndarray) -> np.ndarray:
     """(2 T, 24) int64 log2 energies in 1/256 of a sound (N,) of int16 at 16 kHz."""
     count, before = HOPS * frames_of(len(sound)), WINDOW - HOP
-    padded = np.zeros(before + count * HOP, dtype=np.int64)
-    padded[before : before + len(sound)] = sound
+    padded = extended(sound.astype(np.int64), before, count * HOP - len(sound))
     x = padded[np.arange(count)[:, None] * HOP + np.arange(WINDOW)]
     low, high = x.min(axis=1), x.max(axis=1)
     middle = (low + high) >> 1
@@ -283,7 +282,7 @@ def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -
     samples = convert(np.asarray(sound), rate)
     count = frames_of(len(samples))
     frames = count + SMOOTHING + tables.ahead
-    padded = np.concatenate([samples, np.zeros(frames * FRAME - len(samples), dtype=np.int64)])
+    padded = extended(samples, 0, frames * FRAME - len(samples))
     return _of_energies(tables, log_energies(padded), _silent_hops(padded), count, begin)
 
 

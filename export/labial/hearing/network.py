@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from labial.hearing.convert import extended
 from labial.hearing.features import BANDS, FRAME, HOPS, frames_of, log_energies, normalise
 from labial.hearing.model import HearingModel
 
@@ -71,11 +72,11 @@ def smoothed(frames: np.ndarray) -> np.ndarray:
 
 def hear(model: HearingModel, sound: np.ndarray) -> Heard:
     """Scores and frames of a sound: (N,) samples at 16 kHz, int16 or floats of the same scale; `frames_of(N)` frames,
-    of which frame k shows the 20 ms from sample 320 k on. Digital silence follows the sound, for as many frames as the
-    network looks ahead and smoothing waits for."""
+    of which frame k shows the 20 ms from sample 320 k on. Silence follows the sound, its last sample, for as many
+    frames as the network looks ahead and smoothing waits for."""
     sound = np.asarray(sound)
     count, ahead = frames_of(len(sound)), model.plan.ahead + SMOOTHING
-    padded = np.concatenate([sound, np.zeros((count + ahead) * FRAME - len(sound), dtype=sound.dtype)])
+    padded = extended(sound, 0, (count + ahead) * FRAME - len(sound))
     return hear_energies(model, log_energies(padded), count)
 
 
