@@ -116,6 +116,8 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly latency: { frames: number; milliseconds: number; delay: number };
     /** Frees the memory at once; otherwise the garbage collector does. */
     free(): void;
+    /** Whether its memory was freed. */
+    readonly closed: boolean;
 }
 
 /** The motion of a whole utterance. Frame k is due k / fps seconds after the sound begins. It begins and ends at rest, as
@@ -229,8 +231,11 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
      * the microphone was unplugged or forbidden, or the connection closed. Both when the sound before that was heard. */
     addEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended" | "lost", listener: (event: { readonly type: string }) => void): void;
-    /** Lets go of the source. A hearing with a source stays until then. */
+    /** Lets go of the source. A hearing with a source stays until then. at() is the neutral face from then on: cancel()
+     * leads there smoothly. */
     close(): void;
+    /** Whether it was closed. */
+    readonly closed: boolean;
 }
 
 /** The package labial-words. */
@@ -346,7 +351,7 @@ export interface VoiceOptions<O extends Output = Output> extends WordOptions {
     unknown?: "error" | "nearest";
     /** By which the voice is heard. Without one, times are given to each call. */
     clock?: Clock;
-    /** The AudioContext that counts for a MediaStream; by default one of its own. */
+    /** The AudioContext that counts for a MediaStream; by default one for all of them. */
     context?: Dom<"AudioContext">;
 }
 
@@ -410,8 +415,11 @@ export class Voice<O extends Output = "faps"> {
     /** "ended": all of the utterance was shown, after finish(). */
     addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;
-    /** Frees the memory at once; otherwise the garbage collector does. */
+    /** Frees the memory at once; otherwise the garbage collector does. at() is the neutral face from then on: cancel()
+     * leads there smoothly. Other calls throw. */
     close(): void;
+    /** Whether it was closed. */
+    readonly closed: boolean;
 }
 
 /** The bytes of a module, or what they are compiled to, a WebAssembly.Module, which not every program's types know. */

@@ -1,8 +1,7 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown, unpack } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
-import { unpack } from "./unpack.js";
 import * as timings from "./services.js";
 import speech from "./speech.js";
 
@@ -85,7 +84,7 @@ export class Labial {
 
     static async load(options = {}) {
         const { wasm, laughter } = options;
-        const code = (await wasm) ?? unpack(speech);
+        const code = (await wasm) ?? (await unpack(speech));
         const made = await allowed(WebAssembly.instantiate(code, {}));
         const labial = new Labial(made.instance ?? made, options);
         if (laughter && typeof laughter !== "function") await labial.laughter();
@@ -102,15 +101,11 @@ export class Labial {
     }
 
     async hear(source, options) {
-        const found = await given(this.#hearing);
-        if (!found) throw new LabialError(NO_HEARING);
-        return found.hear(TOOLS, this, source, options);
+        return (await given(this.#hearing, NO_HEARING)).hear(TOOLS, this, source, options);
     }
 
     async words() {
-        const found = await given(this.#words);
-        if (!found) throw new LabialError(NO_WORDS);
-        return found.words(TOOLS, this);
+        return (await given(this.#words, NO_WORDS)).words(TOOLS, this);
     }
 
     async voice(options) {
@@ -267,9 +262,8 @@ export class Labial {
 
     async #fetch() {
         try {
-            const data = await given(this.#laughter);
-            if (!data) throw new LabialError(NO_LAUGHTER);
-            const model = this.model(typeof data === "string" ? unpack(data) : data);
+            const data = await given(this.#laughter, NO_LAUGHTER);
+            const model = this.model(typeof data === "string" ? await unpack(data) : data);
             if (model.names !== this.wasm.bundled_names(1)) throw new LabialError("the laughter is the model of something else");
             return model;
         } finally {
@@ -356,10 +350,11 @@ export class Labial {
     }
 }
 
-/** What load() was given, or what a function that it was given loads. */
-async function given(source) {
+/** What load() was given, or what a function that it was given loads; without it, the error `missing`. */
+async function given(source, missing) {
     let found = await (typeof source === "function" ? source() : source);
     while (found && found.default) found = found.default; // a module, or one inside another as CommonJS has it
+    if (!found) throw new LabialError(missing);
     return found;
 }
 

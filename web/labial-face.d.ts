@@ -8,7 +8,7 @@ import type { TimedWord } from "./index.js";
  * It is light or dark as `color-scheme` says. CSS variables: --labial-skin, --labial-hair, --labial-lips, --labial-iris,
  * --labial-backdrop-top, --labial-backdrop-bottom; `::part(caption)` is the caption. */
 export class LabialFace extends LabialMouth {
-    /** Captions: the words that are spoken, by the source's time. They are shown line by line, and in
+    /** Captions: the words that are spoken, by `position`. They are shown line by line, and in
      * a line of several words the one that is spoken is marked. null for none, and cancel() sets that. */
     get words(): readonly TimedWord[];
     set words(words: Iterable<TimedWord> | null);

@@ -78,21 +78,25 @@ export class LabialFace extends LabialMouth {
         this.#caption.textContent = text ?? "";
     }
 
+    /** Returns whether captions are shown. */
     show(faps) {
         super.show(faps);
-        if (!this.#lines.length) return;
+        if (!this.#lines.length) return false;
         const at = this.position;
-        const line = this.#lines.find(({ start, end }) => start <= at && at < end) ?? null;
+        const speaks = this.track ?? this.stream ?? this.hearing ?? this.voice;
+        const line = (speaks && this.#lines.find(({ start, end }) => start <= at && at < end)) ?? null;
         if (line !== this.#line) this.#write(line);
         const said = line?.words.length > 1 ? line.words.findLast(({ start }) => start <= at) : null;
-        if (said === this.#said) return;
-        this.#said = said;
-        this.#spans.forEach((span, i) => {
-            const wanted = line.words[i] === said ? "mark" : "span";
-            if (span.localName === wanted) return;
-            this.#spans[i] = Object.assign(document.createElement(wanted), { textContent: span.textContent });
-            span.replaceWith(this.#spans[i]);
-        });
+        if (said !== this.#said) {
+            this.#said = said;
+            this.#spans.forEach((span, i) => {
+                const wanted = line.words[i] === said ? "mark" : "span";
+                if (span.localName === wanted) return;
+                this.#spans[i] = Object.assign(document.createElement(wanted), { textContent: span.textContent });
+                span.replaceWith(this.#spans[i]);
+            });
+        }
+        return line !== null;
     }
 
     cancel(milliseconds) {

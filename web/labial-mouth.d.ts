@@ -5,7 +5,8 @@ import type { Faps, Hearing, Stream, Track, Voice } from "./index.js";
  *
  * A source is a track, a stream, a hearing or a voice with the output "faps"; setting one starts it. With an audio element, the
  * drawn frame is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's
- * end the source continues by the clock, and so does a source without a sound.
+ * end the source continues by the clock, and so does a source without a sound. If a source is closed or freed, the face
+ * comes to rest, and then has no source.
  *
  * The event "ended" tells that the source has ended by itself and was drawn, "lost" that the stream that is heard has lost
  * its sound: a microphone that was unplugged, a connection that closed. */
@@ -25,7 +26,8 @@ export class LabialMouth extends HTMLElement {
     /** The voice that is followed and drawn: by its own clock, or, where it has none, by the sound to follow. */
     get voice(): Voice<"faps"> | null;
     set voice(voice: Voice<"faps"> | null);
-    /** Seconds of the source that are drawn. */
+    /** Seconds of the source that are drawn: the sound's, if there is one. Those of a voice with a clock are the clock's, but
+     * count from the first begin() if it is an AudioContext or a MediaStream. */
     readonly position: number;
     /** The drawn frame: 13 FAPs, interpolated for a track. The same object each time. */
     readonly faps: Float32Array;

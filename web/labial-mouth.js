@@ -2,6 +2,9 @@
 // documents it.
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
+/** Milliseconds in which a mouth comes to rest. */
+const CLOSING = 200;
+
 /** Plays a track: any moment of it, interpolated between frames. */
 class TrackPlayer {
     #track;
@@ -91,7 +94,8 @@ class HearingPlayer {
     }
 
     at(seconds) {
-        return this.#hearing.at(this.#hearing.now ?? this.#begin + seconds);
+        const now = this.#cancelled ? null : this.#hearing.now; // which stands if the sound has stopped
+        return this.#hearing.at(now ?? this.#begin + seconds);
     }
 
     over() {
@@ -142,6 +146,18 @@ class VoicePlayer {
     get next() {
         return this.#clock ? new VoicePlayer(this.#voice) : null;
     }
+
+    /** Seconds of the voice that are drawn, where it has a clock of its own. */
+    get position() {
+        return this.#clock ? this.#voice.number / this.#voice.fps : undefined;
+    }
+}
+
+/** What cancel() promises, and what resolves it. */
+function resting() {
+    const rest = {};
+    rest.promise = new Promise((resolve) => { rest.resolve = resolve; });
+    return rest;
 }
 
 /** Node has no elements, but the module may be imported there. */
@@ -159,6 +175,7 @@ export class LabialMouth extends Base {
     #audio = null;
     #position = 0; // seconds
     #over = false; // the source was drawn to its end
+    #goes = false; // there is more to draw than the mouth: captions
     #told = new AbortController(); // of the source's events
     #before = null; // when the last animation frame was, milliseconds
     #asked = 0; // the next animation frame
@@ -181,6 +198,7 @@ export class LabialMouth extends Base {
             delete this[name];
             this[name] = value;
         }
+        this.#listen();
         this.#ask();
     }
 
@@ -190,8 +208,9 @@ export class LabialMouth extends Base {
 
     disconnectedCallback() {
         this.#halt();
+        this.#listen();
         this.#before = null;
-        if (this.#rest) this.#take(null, null);
+        if (this.#rest) this.#leave();
     }
 
     get audio() {
@@ -204,7 +223,7 @@ export class LabialMouth extends Base {
 
     /** Seconds of the source that are drawn. */
     get position() {
-        return this.#position;
+        return (this.audio ? undefined : this.#player?.position) ?? this.#position;
     }
 
     get track() {
@@ -251,39 +270,49 @@ export class LabialMouth extends Base {
         this.#draw(this.#faps);
     }
 
-    cancel(milliseconds = 200) {
+    cancel(milliseconds = CLOSING) {
         if (!(milliseconds >= 0)) throw new TypeError("the milliseconds are no number from 0 on");
         if (this.#rest && !this.#player.speaks) return this.#rest.promise;
         this.audio?.pause();
-        const eases = Boolean(this.#player?.cancel) && !this.#player.over();
+        const eases = this.#player?.cancel && !this.#source?.closed && !this.#player.over();
         if (eases) this.#player.cancel(milliseconds);
         if (!this.isConnected || (!eases && !this.#faps.some(Boolean))) {
-            this.#take(null, null);
+            this.#leave();
             return Promise.resolve();
         }
         this.#take(this.#source, eases ? this.#player : new Easing(this.#faps, milliseconds));
-        this.#rest = {};
-        this.#rest.promise = new Promise((resolve) => { this.#rest.resolve = resolve; });
+        this.#rest = resting();
         return this.#rest.promise;
+    }
+
+    /** Ends what was cancelled. */
+    #leave() {
+        const next = this.#player?.next;
+        this.#take(next && this.#source, next);
     }
 
     #take(source, player) {
         this.#rested();
         this.#source = source || null;
-        this.#told.abort();
-        this.#told = new AbortController();
-        for (const type of ["ended", "lost"]) {
-            source?.addEventListener?.(type, () => this.dispatchEvent(new Event(type)), this.#told);
-        }
         this.#player = player || null;
+        this.#listen();
         this.#position = 0;
         this.#over = false;
         this.#before = null;
         if (!player) {
             this.#halt();
-            if (this.#faps.some(Boolean)) this.show(new Float32Array(CHANNELS.length));
+            if (this.#goes || this.#faps.some(Boolean)) this.#goes = this.show(new Float32Array(CHANNELS.length));
         }
         this.#ask();
+    }
+
+    /** Passes the source's events on while the element is on the page: a source may outlive it. */
+    #listen() {
+        this.#told.abort();
+        this.#told = new AbortController();
+        for (const type of this.isConnected ? ["ended", "lost"] : []) {
+            this.#source?.addEventListener?.(type, () => this.dispatchEvent(new Event(type)), this.#told);
+        }
     }
 
     #halt() {
@@ -304,23 +333,25 @@ export class LabialMouth extends Base {
     /** One animation frame. */
     #step(now) {
         this.#asked = 0;
+        if (this.#source?.closed) { // by its owner: the mouth comes to rest without it
+            this.#source = null;
+            this.#player = new Easing(this.#faps, CLOSING);
+            this.#position = 0;
+            this.#rest ??= resting();
+        }
         const player = this.#player;
         const audio = this.#rest ? null : this.audio;
         this.#position = this.#moment(audio, (now - (this.#before ?? now)) / 1000);
         this.#before = now;
-        this.show(player.at(this.#position, audio));
+        this.#goes = this.show(player.at(this.#position, audio));
         const over = player.over(this.#position);
         if (over !== this.#over) {
             this.#over = over;
             if (over && !this.#rest) this.dispatchEvent(new Event("ended"));
             if (player !== this.#player) return; // a listener has set another source
         }
-        if (over) {
-            const next = (this.#rest && player.next) ?? null;
-            if (this.#rest) this.#take(next && this.#source, next);
-            if (!audio) return;
-        }
-        this.#ask();
+        if (over && this.#rest) this.#leave();
+        else if (!over || audio || this.#goes) this.#ask();
     }
 
     /** The time to show now, seconds: the time of the sound; without a sound, or after it, that of the clock. */

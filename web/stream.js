@@ -2,8 +2,10 @@
 import { CHANNELS, LabialError, NO_LAUGHTER, VISEMES, amount, shown } from "./memory.js";
 
 const DURATION_MAX = 3600000;
-/** Milliseconds: where no duration of a stream is longer, they are seconds, as in export/labial/core/numbers.py. */
+/** Milliseconds. If no sound of a stream lasts longer than SHORTEST, they are probably seconds, as in
+ * export/labial/core/numbers.py; if one lasts longer than LONGEST, milliseconds were probably taken for seconds. */
 const SHORTEST = 5;
+const LONGEST = 10000;
 const ARTICULATION_MAX = 200;
 /** Phonemes that may wait in addition to those in the library's queue. */
 const WAITING_MAX = 65536;
@@ -30,7 +32,7 @@ export class Stream {
     #models; // all that were used, which stay alive as long as the stream does
     #waiting = []; // model, phoneme, milliseconds of what waits for its turn
     #head = 0;
-    #longest = 0; // of the durations
+    #longest = 0; // of the durations of sounds
     #asked = 0; // milliseconds since the beginning, as they were given
     #given = 0; // and in whole ones
     #closed = false; // no more pushes
@@ -78,7 +80,7 @@ export class Stream {
         const whole = Math.round(asked) - this.#given;
         if (whole > DURATION_MAX) throw this.#labial.failure(ERROR_DURATION, shown(milliseconds));
         this.#wait([phoneme, whole]);
-        this.#longest = Math.max(this.#longest, milliseconds);
+        if (phoneme !== this.#model.silence) this.#longest = Math.max(this.#longest, milliseconds);
         this.#asked = asked;
         this.#given += whole;
     }
@@ -107,8 +109,9 @@ export class Stream {
 
     end() {
         this.#open();
-        if (this.#longest > 0 && this.#longest < SHORTEST) {
-            console.warn(`labial: no duration is longer than ${this.#longest} ms: push() takes milliseconds, not seconds`);
+        const longest = this.#longest;
+        if ((longest > 0 && longest < SHORTEST) || longest > LONGEST) {
+            console.warn(`labial: the longest sound lasts ${longest} ms: push() takes milliseconds, render() seconds`);
         }
         this.#longest = 0;
         this.#closed = true;
@@ -230,6 +233,10 @@ export class Stream {
         return { frames, milliseconds: Math.round((1000 * frames) / this.fps), delay };
     }
 
+    get closed() {
+        return !this.#at;
+    }
+
     free() {
         if (!this.#at) return;
         abandoned.unregister(this);
@@ -290,7 +297,7 @@ export class Stream {
             if (model !== this.#fed) {
                 const result = wasm.mouth_use(at, model.at);
                 if (result === ERROR_MODELS) {
-                    this.#refused = this.#refused || 1;
+                    this.#refused ||= 1;
                     return;
                 }
                 this.#check(result);

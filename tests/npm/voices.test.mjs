@@ -173,6 +173,21 @@ test("an AudioContext counts from begin(), less what its device needs", async ()
     assert.ok(Math.abs(early.time - (7 - 0.01 - 0.02)) < 1e-9, "begin() without a time is now, and no frame was shown");
 });
 
+test("MediaStreams without a context share one, which asks to run", async (context) => {
+    let [made, asked] = [0, 0];
+    globalThis.AudioContext = class {
+        currentTime = ++made;
+        resume() { asked++; }
+    };
+    context.after(() => { delete globalThis.AudioContext; });
+    for (let i = 0; i < 5; i++) {
+        const voice = await labial.voice({ clock: { getAudioTracks: () => [] } });
+        assert.equal(voice.now, 1);
+        voice.close();
+    }
+    assert.deepEqual([made, asked], [1, 5]);
+});
+
 test("a media element counts while it plays", async () => {
     const element = { currentTime: 0, paused: true, readyState: 0, play: async () => {} };
     const voice = await told({ clock: element });
@@ -320,7 +335,7 @@ test("a voice that is not understood says so in a sentence, and goes on", async 
     }
     voice.close();
     voice.close();
-    for (const call of [() => voice.feed({}), () => voice.say("a", 0), () => voice.played(1), () => voice.at(1),
+    for (const call of [() => voice.feed({}), () => voice.say("a", 0), () => voice.played(1),
         () => voice.begin(), () => voice.delay(1), () => voice.finish(), () => voice.cancel()]) {
         assert.throws(call, { name: "LabialError", message: "the voice is closed" });
     }

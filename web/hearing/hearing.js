@@ -223,6 +223,10 @@ export class Hearing extends EventTarget {
         return this.#ended && this.#number + 1 >= this.#count;
     }
 
+    get closed() {
+        return !this.#at;
+    }
+
     get output() {
         return this.#output;
     }
@@ -238,7 +242,7 @@ export class Hearing extends EventTarget {
     close() {
         if (!this.#at) return;
         this.#at = 0;
-        this.#number = this.#count - 1;
+        this.#count = 0; // at() is the neutral face
         this.#close(1);
         this.#tap?.close();
         this.#tap = null;

@@ -1,5 +1,8 @@
 // Clocks by which a voice is heard: how many seconds of its sound have reached the listener.
 
+/** For streams that come without a context. */
+let shared;
+
 /** What reads a clock: `read` returns seconds, or null while nothing is heard. `anchored` where the clock runs before
  * the voice does, so that begin() must say when it begins. */
 export function clockOf({ shown }, clock, context) {
@@ -9,7 +12,8 @@ export function clockOf({ shown }, clock, context) {
         if ("destination" in clock && "currentTime" in clock) return { read: () => heard(clock), anchored: true };
         if ("play" in clock && "currentTime" in clock) return { read: reader(clock), anchored: false };
         if ("getAudioTracks" in clock) {
-            const own = context ?? new AudioContext();
+            const own = context ?? (shared ??= new AudioContext());
+            if (own === shared) Promise.resolve(own.resume()).catch(() => {}); // waits for a click
             return { read: () => heard(own), anchored: true };
         }
     }

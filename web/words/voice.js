@@ -191,7 +191,8 @@ export class Voice extends EventTarget {
     }
 
     at(seconds = this.now) {
-        this.#poses(seconds, () => null);
+        if (this.#closed) this.#shown = this.#sounds = null;
+        else this.#poses(seconds, () => null);
         const faps = this.#shown ?? new Array(CHANNELS).fill(0);
         if (this.#output !== "faps") return this.#labial.convert(faps, this.#output, this.#frame, this.#sounds);
         this.#frame.set(faps);
@@ -260,6 +261,10 @@ export class Voice extends EventTarget {
             const read = this.#messages.stats;
             return { messages: read.messages, told, skipped: read.skipped + skipped, dropped };
         });
+    }
+
+    get closed() {
+        return this.#closed;
     }
 
     close() {
