@@ -260,15 +260,16 @@ def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) 
     source = tmp_path / "face_calibrate" / "face_calibrate.ino"
     run(CXX, *arduino_options(arduino), "-x", "c++", source, "-x", "none", *objects, "-o", tmp_path / "sketch")
     text = "+>+cm0\n++m125 1---<f0" + "+" * 200 + "hg\np"
-    lines = run(tmp_path / "sketch", len(text) + 5, text=text).splitlines()
+    lines = run(tmp_path / "sketch", 1005 + len(text), text=text).splitlines()
     pulses = [int(line.split()[-1]) for line in lines if line.startswith("pulse")]
-    assert pulses[5:7] == [1431, 1441] and lines.count("jaw open 125") == 1
-    pulses[5:7] = []
-    assert pulses[:9] == [1400, 1500, 1410, 1411, 1421, 1490, 1480, 1470, 1469]
+    assert pulses[:4] == [1400, 1400, 1500, 1500]  # before and after attach()
+    assert pulses[7:9] == [1431, 1441] and lines.count("jaw open 125") == 1
+    pulses[7:9] = []
+    assert pulses[4:11] == [1410, 1411, 1421, 1490, 1480, 1470, 1469]
     assert max(pulses) == 2600 and pulses[-1] == 1400
     assert "jaw closed = 1421" in lines and "lip full = 1469" in lines
-    assert lines[-8:] == ["[output.jaw]", "neutral = 1400", "closed = 1421", "maximum = 2600",
-                          "curve = [[1421, 0], [1441, 125]]", "[output.lip]", "neutral = 1500", "full = 1469"]
+    assert lines[-6:] == ["[output.jaw]", "closed = 1421", "maximum = 2600", "curve = [[1421, 0], [1441, 125]]",
+                          "[output.lip]", "full = 1469"]
     (tmp_path / "face.toml").write_text('unit = "weight"\n[output.a]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
     assert main(["rig", str(tmp_path / "face.toml"), "--calibrate", "-o", str(tmp_path)]) == 1
 

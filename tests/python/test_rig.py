@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import builtins
+import io
+import json
 import random
 import re
 import subprocess
@@ -10,6 +12,7 @@ import sys
 import xml.etree.ElementTree as ET
 from array import array
 from pathlib import Path
+from typing import List
 
 import numpy as np
 import pytest
@@ -18,11 +21,13 @@ from labial.__main__ import main
 from labial.errors import LabialError
 from labial.fit.sentences import read_sentences
 from labial.rig import table
+from labial.rig.animation import FORMATS
 from labial.rig.description import read
 from labial.rig.gestures import SOURCES
 from labial.rig.table import FAP_MAX, convert, expected
 from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
+from labial.tables.visemes import VISEMES
 from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime
 
@@ -244,6 +249,9 @@ def test_coming_to_rest_by_hand(tmp_path: Path) -> None:
     blind = [0, 20, 60, 90, 100, 100, 100, 100, 100, 80, 40, 10, 0]
     assert played(tmp_path / "face.toml", frames, 13)[:, 0].tolist() == [1400 + value for value in seeing]
     assert played(tmp_path / "face.toml", frames, 1)[:, 0].tolist() == [1400 + value for value in blind]
+    face = Rig(tmp_path / "face.toml")  # a stream's frames tell their sounds, too, which no output follows
+    shown = [Frame(k, tuple(faps), (128, *[0] * 14)).rig(face)["jaw"] for k, faps in enumerate(frames.tolist())]
+    assert shown == [1400 + value for value in blind]
 
 
 CURVED = """
@@ -317,13 +325,14 @@ def test_degrees_are_pulses(tmp_path: Path) -> None:
     """90 degrees between 1000 and 2000 us are 1500; slew, deadband and gain are differences."""
     (tmp_path / "a.toml").write_text('unit = "degrees"\npulses = [1000, 2000]\n[output.jaw]\nfrom = "opening"\n'
                                      "closed = 90\nfull = 126\nslew = 9\ndeadband = 1.8\nacceleration = 3.6\n"
-                                     "curve = [[90, 0], [108, 6], [126, 8]]\n"
+                                     "curve = [[90, 0], [108, 6], [126, 8]]\nvisemes = { TH = 9, PP = -1.8 }\n"
                                      '[output.lip]\nfrom = "fap51"\nneutral = 90\ngain = 0.18\nminimum = 72\n'
                                      "maximum = 108\n")
     jaw, lip = convert(read(tmp_path / "a.toml", "a"))
     assert (jaw.neutral, jaw.closed, jaw.minimum, jaw.maximum) == (1500, 1500, 1500, 1700)
     assert jaw.acceleration == 20 and [part[:2] for part in jaw.curve] == [(1500, 1500), (1650, 1600)]
     assert (jaw.slew, jaw.deadband, lip.neutral, lip.minimum, lip.maximum) == (50, 10, 1500, 1400, 1600)
+    assert {name: amount for name, amount in zip(VISEMES, jaw.visemes) if amount} == {"TH": 50, "PP": -10}
     assert lip.weights[3] * lip.gain / 4096 / 65536 == pytest.approx(1.0)
     (tmp_path / "b.toml").write_text('unit = "degrees"\n[output.jaw]\nfrom = "opening"\nclosed = 0\nfull = 180\n')
     [jaw] = convert(read(tmp_path / "b.toml", "b"))
@@ -333,13 +342,85 @@ def test_degrees_are_pulses(tmp_path: Path) -> None:
 def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
     """At 50 Hz the register holds 121, a tick is 122 periods of 25 MHz: 4.88 us, and 1500 us are 307 of them."""
     (tmp_path / "face.toml").write_text('unit = "pca9685"\n' + JAW.replace("1400", "1500").replace("1900", "2000")
-                                        + "slew = 2\nacceleration = 2\n")
+                                        + "slew = 8\nacceleration = 2.5\n")
     rig = read(tmp_path / "face.toml", "face")
     assert "#define FACE_PCA9685_PRESCALE 121\n" in table.header(rig)
     [jaw] = convert(rig)
-    # Limits are rounded inwards (1500 / 4.88 = 307.4, 2000 / 4.88 = 409.8), and the neutral follows them.
+    # Minimum and maximum are rounded inwards (1500 / 4.88 = 307.4, 2000 / 4.88 = 409.8), and the neutral follows them.
     assert (jaw.neutral, jaw.minimum, jaw.maximum) == (308, 308, 409)
-    assert (jaw.slew, jaw.acceleration) == (1, 1)  # 2 us are less than half a tick, and 0 would be no limit
+    assert (jaw.slew, jaw.acceleration) == (2, 1)  # the nearest ticks; less than half a tick is refused
+
+
+@needs_runtime
+def test_lines_of_json_keep_the_limits_of_speed(tmp_path: Path) -> None:
+    """`labial synth --to jsonl --rig` moves servos no faster than a baked track does, and closes them in p, b, m; an
+    output that follows sounds has its own limit beside them."""
+    (tmp_path / "a.lab").write_text("0 0.1 SIL\n0.1 0.3 AA\n0.3 0.38 M\n0.38 0.6 AA\n0.6 0.7 TH\n0.7 0.9 AA\n")
+    (tmp_path / "slow.toml").write_text('unit = "quarter_us"\n' + CLOSING
+                                        + ACCELERATION.format(slew=40, acceleration=10)
+                                        + "[output.tongue]\nvisemes = { TH = 300 }\nneutral = 1500\nfull = 1800\n"
+                                          "slew = 20\n")
+    out = tmp_path / "a.jsonl"
+    assert main(["synth", "speech_en", str(tmp_path / "a.lab"), "--to", "jsonl", "--rig", str(tmp_path / "slow.toml"),
+                 "-o", str(out)]) == 0
+    rows = [json.loads(line) for line in out.read_text().splitlines()]
+    jaw, tongue = (np.array([row["slow"][name] for row in rows]) for name in ("jaw", "tongue"))
+    faps = np.rint([list(row["faps"].values()) for row in rows]).astype(np.int64)
+    assert np.abs(np.diff(jaw, prepend=[1400])).max() <= 40 and jaw.max() > 1500
+    assert np.abs(np.diff(jaw, 2, prepend=[1400, 1400])).max() <= 10
+    assert jaw[15:20].min() <= 1402
+    assert np.abs(jaw - played(tmp_path / "slow.toml", faps, len(faps))[:, 0] / 4).max() <= 4  # faps are rounded
+    assert np.abs(np.diff(tongue)).max() == 20 and tongue.max() > 1540
+    form = FORMATS["jsonl"].of_rig(read(tmp_path / "slow.toml", "slow"))
+    for parts in ([faps], [faps[:12], faps[12:12], faps[12:]]):  # a motion that comes in parts goes on; each is new
+        text = io.StringIO()
+        form.write(text, parts, 50, "slow", len(faps))
+        moves = np.array([json.loads(line)["slow"]["jaw"] for line in text.getvalue().splitlines()])
+        assert moves[0] == 1400 and np.abs(np.diff(moves, 2)).max() <= 10 and moves.max() > 1450
+
+
+#: What the host's stubs of Arduino do, for sketches that do not use the library.
+STUB = SOURCE / "tests" / "packages" / "arduino_stub"
+
+
+def calibrated(folder: Path, description: str, commands: str) -> List[str]:
+    """What the sketch of a description's `--calibrate` prints, and does, when it is told the commands."""
+    (folder / "face.toml").write_text(description)
+    assert main(["rig", str(folder / "face.toml"), "--calibrate", "-o", str(folder)]) == 0
+    run(CXX, "-std=gnu++11", *warnings("c++"), f"-I{STUB}", "-include", "Arduino.h", "-x", "c++",
+        folder / "face_calibrate" / "face_calibrate.ino", STUB / "host.cpp", "-o", folder / "sketch")
+    return run(folder / "sketch", 5005 + len(commands), text=commands).splitlines()
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_calibration_prints_what_was_set(tmp_path: Path) -> None:
+    """The first pulse is no neutral until it is called so: pasted back, closed and full alone limit the jaw."""
+    lines = calibrated(tmp_path, CLOSING, "+" * 20 + "c" + "-" * 40 + "f" + "gp")
+    assert lines[-3:] == ["[output.jaw]", "closed = 1600", "full = 1200"] and lines[-4] == "jaw 1400"
+    lines = calibrated(tmp_path, CLOSING, "+n+gp")
+    assert lines[-3:] == ["jaw 1410", "[output.jaw]", "neutral = 1410"]
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_calibration_begins_one_servo_after_the_other(tmp_path: Path) -> None:
+    """As docs/servos.md says: a first pulse before and after attach(), and half a second until the next."""
+    lines = calibrated(tmp_path, CLOSING + '[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\n', "")
+    assert lines[:6] == ["pulse 0 1400", "attach 0 9", "pulse 0 1400", "pulse 500 1500", "attach 500 10",
+                         "pulse 500 1500"]
+
+
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_calibration_in_degrees(tmp_path: Path) -> None:
+    """Of a description in degrees the sketch prints degrees, which it takes back, those at a servo's ends, too."""
+    degrees = 'unit = "degrees"\n[output.jaw]\nfrom = "opening"\n'
+    lines = calibrated(tmp_path, degrees + "closed = 60\nfull = 100\n",
+                       "+cm0" + "+" * 50 + "fm12>" + "-" * 200 + "l" + "+" * 300 + "hp")
+    assert lines[-6:] == ["[output.jaw]", "closed = 61.00", "full = 109.49", "minimum = -13.87", "maximum = 199.30",
+                          "curve = [[61.00, 0], [109.49, 12]]"]
+    assert "jaw closed = 61.00" in lines and "jaw 109.59" in lines
+    (tmp_path / "pasted.toml").write_text(degrees + "\n".join(lines[-5:]))
+    [jaw] = convert(read(tmp_path / "pasted.toml", "pasted"))
+    assert (jaw.closed, jaw.minimum, jaw.maximum, jaw.curve[0][:2]) == (1173, 401, 2599, (1173, 1173))
 
 
 def test_drawing_shows_every_output(tmp_path: Path) -> None:
@@ -373,7 +454,8 @@ def test_without_matplotlib_the_way_out_is_named(
 
 
 GAIN = JAW.replace("full = 1900", "gain = 1\nminimum = 1000\nmaximum = 2000")
-PLAIN, WEIGHT = 'unit = "plain"\n', 'unit = "weight"\n'
+PLAIN, WEIGHT, DEGREES = 'unit = "plain"\n', 'unit = "weight"\n', 'unit = "degrees"\n'
+IN_DEGREES = DEGREES + '[output.jaw]\nfrom = "opening"\nclosed = 60\nfull = 100\n'
 #: Python refuses whole numbers of thousands of digits since its releases of September 2022.
 TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
 
@@ -393,14 +475,31 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ("colour = 3\n" + JAW, "colour: unknown key; known are unit,"),
         (JAW + "neutrall = 2\n", "output.jaw.neutrall: unknown key; did you mean neutral?"),
         ('unit = "radians"\n' + JAW, "unit: 'radians' is none of us, quarter_us, pca9685, counts, weight, plain, degr"),
-        ('unit = "degrees"\n' + JAW, "output.jaw.neutral: 14979.6 is not a servo's pulse"),
+        (DEGREES + JAW, "output.jaw.neutral: 1400 is not within -13.96 .. 199.39 degrees, a servo's 400 .. 2600 micro"),
+        (IN_DEGREES, None),
+        (IN_DEGREES.replace("100", "200"), "output.jaw.full: 200 is not within -13.96 .. 199.39 degrees"),
+        (IN_DEGREES + "slew = -3\n", "output.jaw.slew: -3 is not positive"),
+        (IN_DEGREES + "slew = 0.04\n", "output.jaw.slew: 0.04 is less than half a step of its values, microseconds"),
+        (IN_DEGREES + "minimum = 70\n", "output.jaw.closed: 60 is not within 70 .. 100"),
+        (IN_DEGREES + "minimum = 70\nmaximum = 50\n", "output.jaw.minimum: 70 is above the maximum, 50"),
+        (IN_DEGREES + "deadband = 41\n", "output.jaw.deadband: 41 is more than the travel from 60 to 100: the output"),
+        (IN_DEGREES + "curve = [[65, 0], [100, 9]]\n", "output.jaw.curve: closed, 60, is not within 65 .. 100"),
+        (IN_DEGREES + "curve = [[60, 0], [201, 9]]\n", "output.jaw.curve: 201 is not within -13.96 .. 199.39 degrees"),
+        (IN_DEGREES + "curve = [[60, 0], [60.02, 9], [100, 9.1]]\n", "between 60.02 and 100 the output would move"),
+        (IN_DEGREES + "curve = [[60, 0], [60.1, 1e-2], [100, 9]]\n", "the points at 60 and 60.1 are too near"),
         ('unit = "degrees"\npulses = [1000]\n' + JAW, "pulses: is two pulses in microseconds"),
         ('unit = "degrees"\npulses = [2000, 1000]\n' + JAW, "pulses: 2000, 1000 are not two pulses"),
         ("pulses = [1000, 2000]\n" + JAW, "pulses: goes with the unit degrees"),
         ("unit = 50\n" + JAW, "unit: 50 is none of"),
         ("unit = []\n" + JAW, "unit: [] is none of"),
         ("frequency = 50\n" + JAW, "frequency: has no meaning for the unit us"),
-        ('unit = "pca9685"\nfrequency = 5\n' + JAW, "frequency: 5 is not within 23.84 .. 1526 Hz"),
+        ('unit = "pca9685"\nfrequency = 5\n' + JAW, "frequency: 5 is not within 23.85 .. 1525.87 Hz"),
+        ('unit = "pca9685"\nfrequency = 23.84\n' + JAW, "frequency: 23.84 is not within 23.85 .. 1525.87 Hz"),
+        ('unit = "pca9685"\nfrequency = 23.85\n' + JAW, None),
+        ('unit = "pca9685"\nfrequency = 1526\n' + JAW, "frequency: 1526 is not within 23.85 .. 1525.87 Hz"),
+        ('unit = "pca9685"\nfrequency = 1525.87\n' + JAW, "output.jaw.neutral: 8750 ticks of 0.16 us"),
+        ('unit = "pca9685"\n' + JAW + "slew = 2\n", "output.jaw.slew: 2 is less than half a step of its values, ticks"),
+        ('unit = "pca9685"\n' + JAW + "acceleration = 2\n", "output.jaw.acceleration: 2 is less than half a step"),
         ('unit = "pca9685"\nfrequency = "x"\n' + JAW, "frequency: 'x' is not a number"),
         ('unit = "pca9685"\nfrequency = 1000\n' + JAW, "output.jaw.neutral: 5833 ticks of 0.24 us"),
         ('unit = "counts"\n' + JAW, "clock: is missing"),
@@ -427,6 +526,8 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (WEIGHT + JAW.replace("1400", "0").replace("1900", "100"), "jaw.full: 100 is beyond 1: weights are 0 to 1"),
         (WEIGHT + JAW.replace("1400", "0").replace("1900", "1"), None),
         (JAW + "deadband = -1\n", "output.jaw.deadband: -1 is negative"),
+        (JAW + "deadband = 500\n", None),
+        (JAW + "deadband = 501\n", "output.jaw.deadband: 501 is more than the travel from 1400 to 1900: the output"),
         (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
         (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
         (JAW.replace("neutral = 1400\n", ""), "output.jaw.neutral: is missing"),
@@ -469,7 +570,7 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "visemes = 3\n", "output.jaw.visemes: is a table { VISEME = AMOUNT, ... }"),
         (JAW + "visemes = { Th = 3 }\n", "output.jaw.visemes: no viseme is called 'Th'"),
         (JAW + 'visemes = { TH = "x" }\n', "output.jaw.visemes.TH: 'x' is not a number"),
-        (JAW + "visemes = { TH = 4e4 }\n", "output.jaw.visemes.TH: 40000 is beyond 32767"),
+        (JAW + "visemes = { TH = 4e4 }\n", "output.jaw.visemes.TH: 40000 microseconds is beyond 32767"),
         (JAW.replace('from = "opening"', "reach = 3\nvisemes = { TH = 100 }"), "output.jaw.reach: goes with from"),
         (GAIN.replace('from = "opening"', "visemes = { TH = 100 }"), "output.jaw.gain: goes with from"),
         (JAW + "minimum = 1500\n", "output.jaw.neutral: 1400 is not within 1500 .. 1900"),
@@ -516,6 +617,18 @@ def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) 
     assert main(["rig", str(tmp_path / "my face.toml"), "-o", str(tmp_path), "--no-figure"]) == 1
     assert "'my face' is no name for a rig" in capsys.readouterr().err
     assert main(["rig", str(tmp_path / "my face.toml"), "-o", str(tmp_path), "--no-figure", "--name", "face"]) == 0
+
+
+@pytest.mark.parametrize("name", ["outputs", "jaw_curve", "jaw_visemes", "stdint", "Math", "linux"])
+def test_names_with_which_c_does_not_compile(tmp_path: Path, capsys: pytest.CaptureFixture, name: str) -> None:
+    """Names of the file's other tables, of system headers, and of macros. A name is free where there is no table."""
+    (tmp_path / f"{name}.toml").write_text(CURVED + "visemes = { TH = 3 }\n")
+    assert main(["rig", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path / "out"), "--no-figure"]) == 1
+    assert f"'{name}' is no name for a rig: " in capsys.readouterr().err and not (tmp_path / "out").exists()
+    if name.startswith("jaw_"):
+        (tmp_path / f"{name}.toml").write_text(CLOSING)
+        assert main(["rig", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path), "--no-figure"]) == 0
+        run(CC, f"-I{SOURCE / 'include'}", "-fsyntax-only", tmp_path / f"{name}.c")
 
 
 @pytest.mark.parametrize("seed", range(60))

@@ -143,7 +143,7 @@ def test_cancel_eases_and_restart_goes_on() -> None:
 @pytest.mark.parametrize("phoneme", ["P", "B", "M"])
 @pytest.mark.parametrize("milliseconds", [60, 80, 100, 140])
 def test_a_wide_open_mouth_closes_in_time(phoneme: str, milliseconds: int) -> None:
-    """Behind a loud laugh, and behind a vowel that was interrupted, the lips meet in a p, b or m that begins at once."""
+    """Behind a loud laugh, and behind a vowel that was interrupted, the lips meet in a p, b, m that begins at once."""
     for interrupted in (False, True):
         with labial.Stream() as stream:
             stream.use(labial.speech_en if interrupted else labial.laughter_synthetic)

@@ -58,7 +58,8 @@ def test_the_ways_by_hand() -> None:
 
 
 @pytest.mark.parametrize("pose, touching, length", [
-    (8.0, [0, 1], 9), (8.1, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9), (100.0, [], 9),
+    (8.0, [0, 1], 9), (8.1, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9),
+    (100.0, [], 9),
 ])
 def test_a_contact_hurries_the_way(pose: float, touching: List[int], length: int) -> None:
     """From a face that is not at rest the motion is reached with the second frame of the first contact."""

@@ -15,7 +15,13 @@ _C_KEYWORDS = frozenset(
     friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
     public register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch
     template this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t
-    while xor xor_eq main errno""".split()
+    while xor xor_eq main errno linux unix typeof""".split()
+)
+#: Headers of C and POSIX whose names could be a file's: NAME.h beside the sources would take their place.
+_C_HEADERS = frozenset(
+    """assert complex ctype dirent dlfcn fcntl fenv float inttypes iso646 limits locale math pthread sched semaphore
+    setjmp signal stdalign stdarg stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string
+    strings tgmath threads time uchar unistd wchar wctype""".split()
 )
 
 
@@ -25,7 +31,7 @@ def check_name(name: str, what: str = "model") -> None:
         raise ModelError(
             f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
         )
-    if name in _C_KEYWORDS or name.startswith("labial"):
+    if name in _C_KEYWORDS or name.lower() in _C_HEADERS or name.startswith("labial"):
         raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
 
 

@@ -14,6 +14,17 @@ from labial.rig.description import CURVE_POINTS, PULSE_MAX, PULSE_MIN, Rig
 #: Most outputs: the sketch selects them by a digit.
 OUTPUTS_MAX = 10
 
+#: Prints a pulse in degrees, rounded to hundredths.
+_PRINT_DEGREES = """\
+    const double place = (pulse - {start!r}) / {each!r};
+    const long hundredths = (long)(100.0 * place + (place < 0.0 ? -0.5 : 0.5));
+    Serial.print(hundredths < 0 ? "-" : "");
+    Serial.print((int)(labs(hundredths) / 100));
+    Serial.print(".");
+    Serial.print((int)(labs(hundredths) / 10 % 10));
+    Serial.print((int)(labs(hundredths) % 10));
+"""
+
 
 def sketch(rig: Rig) -> str:
     """The sketch's text. Raises DataError for a rig that moves no servos, or more than `OUTPUTS_MAX`."""
@@ -21,8 +32,13 @@ def sketch(rig: Rig) -> str:
         raise DataError(rig.path, None, f"--calibrate is for servos, and the unit is {rig.unit.name}")
     if len(rig.outputs) > OUTPUTS_MAX:
         raise DataError(rig.path, None, f"--calibrate is for at most {OUTPUTS_MAX} servos, not {len(rig.outputs)}")
+    numbers, least, most = rig.numbers, round(PULSE_MIN), round(PULSE_MAX)
+    unit, printing = "microseconds", "    Serial.print(pulse);\n"
+    if numbers.degrees:
+        least, most = least + 1, most - 1  # so that rounded degrees are within what a description may have
+        unit, printing = "degrees", _PRINT_DEGREES.format(start=numbers.start, each=numbers.each)
     names = ", ".join(f'"{output.name}"' for output in rig.outputs)
-    begins = ", ".join(str(round(output.neutral)) for output in rig.outputs)
+    begins = ", ".join(str(min(max(round(output.neutral), least), most)) for output in rig.outputs)
     pins = ", ".join(str(9 + number) for number in range(len(rig.outputs)))
     return f"""/*
  * Finds the pulses of {rig.name}'s servos by commands over the serial line, 9600 baud. Take the horns off first.
@@ -30,14 +46,14 @@ def sketch(rig: Rig) -> str:
  *
  *     0 .. 9   the servo that is moved          + -   by ten microseconds
  *     n        here the face rests              > <   by one
- *     c        here the lips just touch         g     to where the face rests
- *     f        here the mouth is full open      p     prints the description's lines
+ *     c        here the lips just touch         g     to where the face rests, before n to the first pulse
+ *     f        here the mouth is full open      p     prints what was set as lines of the description, {unit}
  *     l h      the least and the greatest pulse that the mechanics allow
  *     m12      here the mouth is open by 12: a whole number, in tenths of a millimetre or whatever you measure. Two to
  *              {CURVE_POINTS[1]} such points are the linkage's curve
  *
  * Servos at pins: change `pins`. Boards of the ESP32 family use ESP32Servo.h. Where a chip makes the pulses, change
- * show().
+ * show() and attach().
  */
 #include <Servo.h>
 
@@ -45,7 +61,8 @@ def sketch(rig: Rig) -> str:
 
 static const char *const names[OUTPUTS] = {{ {names} }};
 static const int pins[OUTPUTS] = {{ {pins} }};
-static int pulses[OUTPUTS] = {{ {begins} }}; // microseconds
+static const int firsts[OUTPUTS] = {{ {begins} }}; // microseconds
+static int pulses[OUTPUTS];
 static int found[OUTPUTS][5]; // neutral, closed, full, minimum, maximum; 0 where it was not set
 static const char *const keys[5] = {{ "neutral", "closed", "full", "minimum", "maximum" }};
 static Servo servos[OUTPUTS];
@@ -59,13 +76,27 @@ static void show(int output)
     servos[output].writeMicroseconds(pulses[output]);
 }}
 
+// Boards differ in whether the first pulse is the one that was written before attach(), or the one after it.
+static void attach(int output)
+{{
+    pulses[output] = firsts[output];
+    show(output);
+    servos[output].attach(pins[output]);
+    show(output);
+}}
+
+static void printPulse(int pulse) // in {unit}
+{{
+{printing}}}
+
 static void move(int output, int pulse)
 {{
-    pulses[output] = constrain(pulse, {PULSE_MIN:.0f}, {PULSE_MAX:.0f});
+    pulses[output] = constrain(pulse, {least}, {most});
     show(output);
     Serial.print(names[output]);
     Serial.print(" ");
-    Serial.println(pulses[output]);
+    printPulse(pulses[output]);
+    Serial.println("");
 }}
 
 static void keep(int key)
@@ -75,7 +106,8 @@ static void keep(int key)
     Serial.print(" ");
     Serial.print(keys[key]);
     Serial.print(" = ");
-    Serial.println(pulses[chosen]);
+    printPulse(pulses[chosen]);
+    Serial.println("");
 }}
 
 static void keepOpening()
@@ -96,7 +128,7 @@ static void printCurve(int output)
     Serial.print("curve = [");
     for (int point = 0; point < points[output]; point++) {{
         Serial.print(point > 0 ? ", [" : "[");
-        Serial.print(measured[output][point][0]);
+        printPulse(measured[output][point][0]);
         Serial.print(", ");
         Serial.print(measured[output][point][1]);
         Serial.print("]");
@@ -114,7 +146,8 @@ static void printAll()
             if (found[output][key] != 0) {{
                 Serial.print(keys[key]);
                 Serial.print(" = ");
-                Serial.println(found[output][key]);
+                printPulse(found[output][key]);
+                Serial.println("");
             }}
         }}
         if (points[output] >= {CURVE_POINTS[0]})
@@ -126,9 +159,8 @@ void setup()
 {{
     Serial.begin(9600);
     for (int output = 0; output < OUTPUTS; output++) {{
-        servos[output].attach(pins[output]);
-        found[output][0] = pulses[output];
-        show(output);
+        attach(output);
+        delay(500); // so that the servos do not draw their starting currents at once
     }}
     Serial.println("0 .. 9, + - > <, n c f l h, m, g, p");
 }}
@@ -164,7 +196,7 @@ void loop()
         move(chosen, pulses[chosen] - 1);
         break;
     case 'g':
-        move(chosen, found[chosen][0]);
+        move(chosen, found[chosen][0] != 0 ? found[chosen][0] : firsts[chosen]);
         break;
     case 'n':
         keep(0);

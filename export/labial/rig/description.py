@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.errors import LabialError
 from labial.files import limits
@@ -20,7 +21,7 @@ PULSE_MIN, PULSE_MAX = 400.0, 2600.0
 
 #: Default pulses at 0 and 180 degrees: those of Arduino's library Servo.
 DEGREES = (544.0, 2400.0)
-_PLACES, _STEPS = ("neutral", "full", "minimum", "maximum", "closed"), ("gain", "slew", "acceleration", "deadband")
+_PLACES = ("neutral", "full", "minimum", "maximum", "closed")
 
 _TOP_KEYS = ("unit", "frequency", "clock", "pulses", "output")
 _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum", "invert", "slew", "closed",
@@ -29,9 +30,25 @@ _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum"
 CURVE_POINTS = (2, 9)
 
 
+class Numbers(NamedTuple):
+    """The numbers of a description: those in degrees are converted to microseconds, all others are values already."""
+
+    degrees: bool = False
+    start: float = 0.0  #: the value that 0 stands for
+    each: float = 1.0  #: the difference in value that 1 stands for
+
+    def value(self, number: float) -> float:
+        """The value that a number of the description stands for."""
+        return number * self.each + self.start
+
+    def number(self, value: float) -> float:
+        """The number that stands for a value."""
+        return (value - self.start) / self.each
+
+
 @dataclass(frozen=True)
 class Output:
-    """One output, in the unit of the description: microseconds for servos."""
+    """One output, in the unit of the description, but servos always in microseconds."""
 
     name: str
     weights: Row
@@ -59,6 +76,7 @@ class Rig:
     unit: Unit
     outputs: Tuple[Output, ...]
     path: str
+    numbers: Numbers = Numbers()
 
 
 def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
@@ -67,21 +85,21 @@ def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
     content = read_toml(path)
     top = Table(where, "", content, _TOP_KEYS)
     unit = _unit(top)
-    ends = _degrees(top)
+    numbers = _numbers(top)
     outputs = content.get("output")
     if not isinstance(outputs, dict) or not outputs:
         raise top.error("output", "at least one table [output.NAME] is needed")
     limits.refuse(path, "it has", len(outputs), limits.OUTPUTS, "outputs")
-    return Rig(name, unit, tuple(_output(where, key, in_microseconds(table, ends), unit)
-                                 for key, table in _named(top, outputs)), where)
+    return Rig(name, unit, tuple(_output(where, key, table, unit, numbers) for key, table in _named(top, outputs)),
+               where, numbers)
 
 
-def _degrees(top: Table) -> Optional[Tuple[float, float]]:
-    """The pulses at 0 and 180 degrees of a description in degrees; None of one in another unit."""
+def _numbers(top: Table) -> Numbers:
+    """The numbers of a description; of one in degrees with its pulses at 0 and 180 degrees."""
     if top.content.get("unit") != "degrees":
         if "pulses" in top.content:
             raise top.error("pulses", "goes with the unit degrees")
-        return None
+        return Numbers()
     given = top.content.get("pulses", list(DEGREES))
     if not isinstance(given, list) or len(given) != 2:
         raise top.error("pulses", "is two pulses in microseconds, those at 0 and 180 degrees")
@@ -89,24 +107,7 @@ def _degrees(top: Table) -> Optional[Tuple[float, float]]:
     if not PULSE_MIN <= low < high <= PULSE_MAX:
         raise top.error("pulses", f"{low:g}, {high:g} are not two pulses from {PULSE_MIN:g} to {PULSE_MAX:g}, "
                                   "the shorter one first")
-    return low, high
-
-
-def in_microseconds(output: Mapping[str, Any], ends: Optional[Tuple[float, float]]) -> Mapping[str, Any]:
-    """An output's table with degrees as microseconds; other values stay, and cause errors later."""
-    if ends is None:
-        return output
-    each = (ends[1] - ends[0]) / 180.0
-
-    def convert(key: str, value: Any) -> Any:
-        if key == "curve" and isinstance(value, list):  # of points, whose first number is where the servo is
-            return [[convert("neutral", point[0]), *point[1:]] if isinstance(point, list) and point else point
-                    for point in value]
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or key not in (*_PLACES, *_STEPS):
-            return value
-        return value * each + (ends[0] if key in _PLACES else 0.0)
-
-    return {key: convert(key, value) for key, value in output.items()}
+    return Numbers(True, low, (high - low) / 180.0)
 
 
 def _unit(top: Table) -> Unit:
@@ -167,7 +168,8 @@ def _source(table: Table) -> Tuple[Row, Union[float, None]]:
     return weights, reach
 
 
-def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Output:
+def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, numbers: Numbers) -> Output:
+    """An output. Its numbers are checked as the description has them, so that errors quote what its author wrote."""
     table = Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
     alone = "from" not in content and "visemes" in content  # it follows sounds, not FAPs
     weights, reach = ((0.0,) * CHANNELS, 1.0) if alone else _source(table)
@@ -213,9 +215,15 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit) -> Out
         raise table.error("deadband", f"{deadband:g} is negative")
     if minimum > maximum:
         raise table.error("minimum", f"{minimum:g} is above the maximum, {maximum:g}")
-    _check_values(table, unit, minimum, maximum)
-    return Output(name, weights, gain, neutral, minimum, maximum, invert, slew, "gain" in content, closed, deadband,
-                  acceleration, _curve(table, unit, rest), _visemes(table))
+    if deadband > maximum - minimum:
+        raise table.error("deadband", f"{deadband:g} is more than the travel from {minimum:g} to {maximum:g}: the "
+                                      "output would not move")
+    _check_values(table, unit, numbers, minimum, maximum)
+    of, each = numbers.value, numbers.each
+    return Output(name, weights, gain * each, of(neutral), of(minimum), of(maximum), invert, slew * each,
+                  "gain" in content, None if closed is None else of(closed), deadband * each, acceleration * each,
+                  tuple((of(linear), of(bent)) for linear, bent in _curve(table, unit, numbers, rest)),
+                  tuple(amount * each for amount in _visemes(table)))
 
 
 def _visemes(table: Table) -> Row:
@@ -231,7 +239,7 @@ def _visemes(table: Table) -> Row:
     return tuple(table.as_number(f"visemes.{name}", given[name]) if name in given else 0.0 for name in VISEMES)
 
 
-def _curve(table: Table, unit: Unit, rest: str) -> Tuple[Tuple[float, float], ...]:
+def _curve(table: Table, unit: Unit, numbers: Numbers, rest: str) -> Tuple[Tuple[float, float], ...]:
     """The curve that makes a linkage open evenly, from measured points [VALUE, OPENING]: the values of an even linkage,
     from neutral, which the key `rest` has, to full, and the values that open this linkage equally far."""
     if "curve" not in table.content:
@@ -244,9 +252,8 @@ def _curve(table: Table, unit: Unit, rest: str) -> Tuple[Tuple[float, float], ..
         if not isinstance(point, list) or len(point) != 2:
             raise table.error("curve", f"point {number} is not [VALUE, OPENING]")
         points.append((table.as_number("curve", point[0]), table.as_number("curve", point[1])))
-        if unit.servo and not PULSE_MIN <= points[-1][0] <= PULSE_MAX:
-            raise table.error("curve", f"{points[-1][0]:g} is not a servo's pulse, {PULSE_MIN:g} .. {PULSE_MAX:g} "
-                                       "microseconds")
+        if unit.servo:
+            _check_pulse(table, "curve", points[-1][0], numbers)
     if "full" not in table.content:
         raise table.error("curve", "goes with full, not with gain")
     points.sort()
@@ -271,15 +278,26 @@ def _between(points: Sequence[Tuple[float, float]], value: float) -> float:
     return start + (end - start) * (value - low) / (high - low)
 
 
-def _check_values(table: Table, unit: Unit, minimum: float, maximum: float) -> None:
+def _check_pulse(table: Table, key: str, number: float, numbers: Numbers) -> None:
+    """Checks that a number stands for a servo's pulse."""
+    if PULSE_MIN <= numbers.value(number) <= PULSE_MAX:
+        return
+    pulses = f"{PULSE_MIN:g} .. {PULSE_MAX:g} microseconds"
+    if numbers.degrees:
+        low, high = math.ceil(100 * numbers.number(PULSE_MIN)) / 100, math.floor(100 * numbers.number(PULSE_MAX)) / 100
+        raise table.error(key, f"{number:g} is not within {low:g} .. {high:g} degrees, a servo's {pulses}")
+    raise table.error(key, f"{number:g} is not a servo's pulse, {pulses}")
+
+
+def _check_values(table: Table, unit: Unit, numbers: Numbers, minimum: float, maximum: float) -> None:
     """Checks the values that the description gives an output: of servos and weights their range, of servos and of
     `closed` that they lie within the limits."""
     given = {key: table.number(key) for key in _PLACES if key in table.content}
     for key, value in given.items():
         if unit.name == "weight" and round(value * unit.scale) > unit.scale:
             raise table.error(key, f"{value:g} is beyond 1: weights are 0 to 1")
-        if unit.servo and not PULSE_MIN <= value <= PULSE_MAX:
-            raise table.error(key, f"{value:g} is not a servo's pulse, {PULSE_MIN:g} .. {PULSE_MAX:g} microseconds")
+        if unit.servo:
+            _check_pulse(table, key, value, numbers)
     for key, value in given.items():
         if (unit.servo or key == "closed") and not minimum <= value <= maximum:
             raise table.error(key, f"{value:g} is not within {minimum:g} .. {maximum:g}")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Callable, List, Optional, Tuple, Union
 
-from labial.errors import DataError
+from labial.errors import DataError, ModelError
 from labial.files.c import check_name, written_by
 from labial.files.faps import FAP_NAMES, TOUCHING
 from labial.files.outputs import folder
@@ -24,12 +24,14 @@ if TYPE_CHECKING:
 #: Version and limits of include/labial/rig.h.
 FORMAT = 3
 APART = 136  # the opening at which lips no longer touch at all
-WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 65535, 268435455, 16777215
+WEIGHT_MAX, WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 32767, 65535, 268435455, 16777215
 SLOPE_MAX, SEGMENTS, VISEME_MAX = 1 << 25, 8, 32767
 _SLOPE_ONE = 1 << 20
 
 #: FAPs up to which a table is within one unit of the description; faces stay well below.
 FAP_MAX = 1000.0
+#: Most units by which weights and gain may miss the description; factors tried where no power of two comes so near.
+_NEAR, _GAINS = 0.49, 256
 
 
 @dataclass(frozen=True)
@@ -66,12 +68,15 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
         return DataError(rig.path, None, f"output.{output.name}.{key}: {message}")
 
     scale = rig.unit.scale
-    # Limits are rounded inwards: no servo exceeds the limits of the description.
+    # Minimum and maximum are rounded inwards: no servo leaves them. All else is rounded to the nearest whole number.
     values = {"neutral": math.floor(output.neutral * scale + 0.5), "minimum": math.ceil(output.minimum * scale - 1e-9),
               "maximum": math.floor(output.maximum * scale + 1e-9),
-              "slew": max(math.floor(output.slew * scale + 0.5), 1) if output.slew else 0,
-              "acceleration": max(math.floor(output.acceleration * scale + 0.5), 1) if output.acceleration else 0,
+              "slew": math.floor(output.slew * scale + 0.5),
+              "acceleration": math.floor(output.acceleration * scale + 0.5),
               "deadband": math.floor(output.deadband * scale + 0.5)}
+    for key, limit in (("slew", output.slew), ("acceleration", output.acceleration)):
+        if limit and not values[key]:  # zero would be no limit, and one would be more than twice as much
+            raise fail(key, f"{limit / rig.numbers.each:g} is less than half a step of its values, {rig.unit.text}")
     if output.closed is not None:
         values["closed"] = math.floor(output.closed * scale + 0.5)
     for key, value in values.items():
@@ -92,33 +97,35 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
     weights, gain = found
     return TableOutput(output.name, weights, gain, values["neutral"], values["minimum"],
                        values["maximum"], values["slew"], output.invert, values.get("closed"), values["deadband"],
-                       values["acceleration"], _segments(output, scale, fail), _amounts(output, scale, fail))
+                       values["acceleration"], _segments(rig, output, fail), _amounts(rig, output, fail))
 
 
-def _amounts(output: Output, scale: float, fail: Callable[[str, str], DataError]) -> Tuple[int, ...]:
+def _amounts(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -> Tuple[int, ...]:
     """What sounds add, in the table's units."""
-    amounts = tuple(math.floor(amount * scale + 0.5) for amount in output.visemes)
+    amounts = tuple(math.floor(amount * rig.unit.scale + 0.5) for amount in output.visemes)
     for name, amount in zip(VISEMES, amounts):
         if abs(amount) > VISEME_MAX:
-            raise fail(f"visemes.{name}", f"{amount} is beyond {VISEME_MAX}")
+            raise fail(f"visemes.{name}", f"{amount} {rig.unit.text} is beyond {VISEME_MAX}")
     return amounts
 
 
-def _segments(output: Output, scale: float, fail: Callable[[str, str], DataError]) -> Tuple[Tuple[int, int, int], ...]:
+def _segments(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -> Tuple[Tuple[int, int, int], ...]:
     """An output's curve in the table. Each segment lies on its original line, so that rounding its beginning has no
     effect except at its end."""
+    scale, number = rig.unit.scale, rig.numbers.number
     segments: List[Tuple[int, int, int]] = []
     for (linear, value), (following, reached) in zip(output.curve, output.curve[1:]):
         slope = (reached - value) / (following - linear)
         first = math.floor(linear * scale + 0.5)
         to = math.floor((value * scale + slope * (first - linear * scale)) + 0.5)
         if abs(slope) * _SLOPE_ONE > SLOPE_MAX:
-            raise fail("curve", f"between {value:g} and {reached:g} the output would move {abs(slope):.0f} times as "
-                                f"far as evenly, {SLOPE_MAX // _SLOPE_ONE} times is the most")
+            raise fail("curve", f"between {number(value):g} and {number(reached):g} the output would move "
+                                f"{abs(slope):.0f} times as far as evenly, {SLOPE_MAX // _SLOPE_ONE} times is the most")
         if max(abs(first), abs(to)) > VALUE_MAX:
-            raise fail("curve", f"what lies at {value:g} is beyond {VALUE_MAX}")
+            raise fail("curve", f"what lies at {number(value):g} is beyond {VALUE_MAX}")
         if segments and first <= segments[-1][0]:
-            raise fail("curve", f"the points at {segments[-1][1] / scale:g} and {value:g} are too near for whole units")
+            before = output.curve[len(segments) - 1][1]
+            raise fail("curve", f"the points at {number(before):g} and {number(value):g} are too near for whole units")
         segments.append((first, to, math.floor(slope * _SLOPE_ONE + 0.5)))
     return tuple(segments)
 
@@ -127,22 +134,38 @@ def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]
     """Q12 weights and Q16 gain whose product is nearest to the given one, or None if none is near enough.
 
     Weights times a power of two and the gain divided by it give the same output. The result is the simplest pair with
-    an error below a twentieth unit for FAPs up to FAP_MAX, else the pair with the least error.
+    an error below a twentieth unit for FAPs up to FAP_MAX, else the pair with the least error. If that is not near
+    enough, other factors are tried, the largest weights first.
     """
-    best: Optional[Tuple[float, Tuple[int, ...], int]] = None
+    best: Tuple[float, Tuple[int, ...], int] = (math.inf, (), 0)
     for power in sorted(range(-12, 20), key=abs):
         rounded = tuple(math.floor(weight * 2.0**power * 4096 + 0.5) for weight in weights)
         whole = math.floor(gain / 2.0**power * 65536 + 0.5)
-        sizes = [abs(weight) for weight in rounded]
-        if sum(sizes) > WEIGHT_SUM_MAX or max(sizes) > 32767 or abs(whole) > GAIN_MAX:
-            continue
-        error = FAP_MAX * sum(abs(found / 4096 * (whole / 65536) - weight * gain)
-                              for found, weight in zip(rounded, weights))
-        if best is None or error < best[0]:
-            best = (error, rounded, whole)
-        if error < 0.05:
+        best = min(best, (_error(weights, gain, rounded, whole), rounded, whole), key=lambda pair: pair[0])
+        if best[0] < 0.05:
             break
-    return None if best is None or best[0] > 0.49 else best[1:]
+    if _NEAR < best[0] < math.inf:
+        moves = [weight * gain * 4096 * 65536 for weight in weights]
+        least = max(max(map(abs, moves)) / WEIGHT_MAX, sum(map(abs, moves)) / WEIGHT_SUM_MAX)
+        for step in range(_GAINS):
+            whole = math.ceil(least * (1.0 + step / _GAINS)) * (1 if gain > 0 else -1)
+            rounded = tuple(math.floor(move / whole + 0.5) for move in moves)
+            best = min(best, (_error(weights, gain, rounded, whole), rounded, whole), key=lambda pair: pair[0])
+    return None if best[0] > _NEAR else best[1:]
+
+
+def _error(weights: Row, gain: float, rounded: Tuple[int, ...], whole: int) -> float:
+    """Units by which Q12 weights and a Q16 gain miss the given ones at most, for FAPs up to FAP_MAX; infinite for what
+    a table cannot hold."""
+    sizes = [abs(weight) for weight in rounded]
+    if sum(sizes) > WEIGHT_SUM_MAX or max(sizes) > WEIGHT_MAX or abs(whole) > GAIN_MAX:
+        return math.inf
+    return FAP_MAX * sum(abs(found / 4096 * (whole / 65536) - weight * gain) for found, weight in zip(rounded, weights))
+
+
+def holds(weights: Row, gain: float) -> bool:
+    """Whether a table can hold an output that moves by so many of its units per FAP unit."""
+    return _quantise(weights, gain) is not None
 
 
 def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray,
@@ -290,6 +313,10 @@ def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths. Nothing is written when the rig has errors."""
     check_name(rig.name, "rig")
     table = convert(rig)
+    own = ["outputs", *(f"{output.name}_curve" for output in table if output.curve),
+           *(f"{output.name}_visemes" for output in table if output.visemes)]
+    if rig.name in own:
+        raise ModelError(f"{rig.name!r} is no name for a rig: {rig.name}.c has another table of this name")
     files = {f"{rig.name}.h": header(rig), f"{rig.name}.c": source(rig, table)}
     with folder(directory) as made:
         for name, text in files.items():

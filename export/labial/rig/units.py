@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Optional
 
@@ -36,7 +37,8 @@ def make_unit(name: str, parameter: float = 50.0) -> Unit:
     if name == "pca9685":
         low, high = (_PCA9685_OSCILLATOR / _PCA9685_TICKS / (prescale + 1) for prescale in reversed(_PCA9685_PRESCALE))
         if not low <= parameter <= high:
-            raise LabialError(f"{parameter:g} is not within {low:.4g} .. {high:.4g} Hz")
+            least, most = math.ceil(100 * low) / 100, math.floor(100 * high) / 100
+            raise LabialError(f"{parameter:g} is not within {least:g} .. {most:g} Hz")
         # Uses the period that the register produces, not the requested one.
         prescale = round(_PCA9685_OSCILLATOR / (_PCA9685_TICKS * parameter)) - 1
         tick = (prescale + 1) / _PCA9685_OSCILLATOR * 1e6

@@ -117,6 +117,7 @@ class Rig:
         checked(core.rig_check(*self._table), os.fspath(rig.path))
         self._values, self._changes = (ctypes.c_int32 * len(rows))(), (ctypes.c_int32 * len(rows))()
         self._apply, self._show = core.rig_apply, core.rig_show
+        self._follows_sounds = any(row.visemes for row in rows)
         self._guard = Guard(whole=True)  # held from updating the values until they are read
         self.rest()
 
@@ -147,20 +148,18 @@ class Rig:
         """Applies one frame, or its 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the
         frames after it, one frame after the other: with them a servo with a `closed` position starts early enough to be
         closed in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of
-        the frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. They
-        are for faces without limits of acceleration, and need no frames that follow. :meth:`labial.Frame.rig` gives
-        them by itself."""
+        the frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. With
+        such outputs there are no limits of acceleration, and no frames that follow. :meth:`labial.Frame.rig` gives
+        shares by itself."""
         numbers, ahead = one_frame(faps), _whole_faps(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")
         shares = bytes(visemes)
-        if not shares:
-            return self._moved(numbers + ahead)
-        if len(shares) != VISEMES or ahead:
+        if shares and (len(shares) != VISEMES or ahead):
             raise LabialError(f"a frame has {VISEMES} shares of sounds, and they go with this frame alone, not "
                               f"{len(shares)} and {len(ahead)} FAPs that follow")
-        return self._shown(numbers, shares)
+        return self._shown(numbers, shares) if shares and self._follows_sounds else self._moved(numbers + ahead)
 
     def ahead(self, frames: Iterable[Faps], count: int) -> Iterator[Values]:
         """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
