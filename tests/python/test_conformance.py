@@ -13,7 +13,7 @@ import motion
 from labial.errors import LabialError
 from labial.evaluate.check import device_frames
 from labial.reference import contact
-from labial.reference.fade import delivered
+from labial.reference.fade import FADE, delivered
 from labial.reference.stream import ARTICULATION_MAX, DURATION_MAX, synthesise
 from labial.reference.tables import ExportedTables
 from labial.tables.quantise import ExportedModel, quantise
@@ -104,7 +104,7 @@ def test_streams_reach_the_edge_cases(
     graded = {number for number, label in enumerate(models["laughter"].phonemes) if label.endswith(("_soft", "_loud"))}
     assert graded and graded <= {push.phoneme for push in pushes("graded")}
     lengths = {sum(run.counts) for part in by_name["quick_switches"].parts for run in motion.runs(part.pushes, 50)}
-    assert {1, motion.FADE - 1, motion.FADE, motion.FADE + 1} <= lengths
+    assert {1, FADE - 1, FADE, FADE + 1} <= lengths
     assert max(push.milliseconds for push in pushes("saturated")) > 65535
     assert any(part.cancel and part.cancel[0] == 0 for part in by_name["cancelled"].parts)
     turns = pushes("turns")
@@ -112,7 +112,7 @@ def test_streams_reach_the_edge_cases(
     counts = {"speech": set(), "laughter": set()}
     for push in turns:
         counts[push.model].add(push.milliseconds // 20)
-    assert all(min(found) < motion.FADE // 2 and max(found) >= motion.FADE for found in counts.values())
+    assert all(min(found) < FADE // 2 and max(found) >= FADE for found in counts.values())
     changes = [percent for script in scripts for part in script.parts for _, percent in part.articulation]
     assert min(changes) == 0 and max(changes) > ARTICULATION_MAX and {50, 130} <= set(changes)
     again = [(script.name, at) for script in scripts for part in script.parts for at, _ in part.again]

@@ -18,6 +18,7 @@ import numpy as np
 import pytest
 
 from labial.__main__ import main
+from labial.commands.common import Limited
 from labial.errors import LabialError
 from labial.fit.sentences import read_sentences
 from labial.rig import table
@@ -371,7 +372,8 @@ def test_lines_of_json_keep_the_limits_of_speed(tmp_path: Path) -> None:
     assert jaw[15:20].min() <= 1402
     assert np.abs(jaw - played(tmp_path / "slow.toml", faps, len(faps))[:, 0] / 4).max() <= 4  # faps are rounded
     assert np.abs(np.diff(tongue)).max() == 20 and tongue.max() > 1540
-    form = FORMATS["jsonl"].of_rig(read(tmp_path / "slow.toml", "slow"))
+    slow = read(tmp_path / "slow.toml", "slow")
+    form = FORMATS["jsonl"].of_rig(slow, Limited(slow))
     for parts in ([faps], [faps[:12], faps[12:12], faps[12:]]):  # a motion that comes in parts goes on; each is new
         text = io.StringIO()
         form.write(text, parts, 50, "slow", len(faps))

@@ -1,4 +1,4 @@
-"""Plots and pages of motion files, avatars on pages, figures of several models."""
+"""Plots and pages of motion files, avatars on pages."""
 
 from __future__ import annotations
 
@@ -6,32 +6,25 @@ import base64
 import json
 import re
 import struct
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List
 
 import numpy as np
 import pytest
 
-from avatars import document_of, glb, made_head
+from avatars import TRUE, document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser
 from bundlers import NPM, tools
 from labial.__main__ import main
 from labial.errors import DataError
-from labial.evaluate import side_by_side
-from labial.evaluate.measures import labial_parameters
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.files.frames import even
-from labial.reference import published, stream
-from labial.reference.tables import FloatTables
-from labial.reference.units import frame_counts
 from labial.rig.animation import face, outputs
 from labial.see.motion import read_bands, read_fap, read_motion, read_motions
 from labial.see.page import page
 from labial.see.player import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER
-from labial.tables.model import save
-from models import random_model, write_motion
+from models import write_motion
 
 HEADER = ",".join(("time", *FAP_COLUMNS))
 LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"
@@ -161,6 +154,18 @@ def test_plot_shows_files_phonemes_and_bands(given: Path) -> None:
     for colour in ("#fdf0d2", "#f6c9c9", "#d9cdf0", "#e4e7eb"):
         assert text.count(f"fill: {colour}") >= 5  # in each panel
     assert main(arguments) == 0 and (given / "out.svg").read_text() == text
+
+
+def test_plot_says_how_far_lips_close(given: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Catches frames that are mostly of the phonemes beside a p, b, m: its own are 5 to 9."""
+    pytest.importorskip("matplotlib")
+    shown = np.zeros((20, 13))
+    shown[:, [FAP_COLUMNS.index("fap51"), FAP_COLUMNS.index("fap52")]] = 3.0, 4.0
+    shown[5:10, FAP_COLUMNS.index("fap52")] = -50.0, -40.0, -23.0, -40.0, -50.0
+    write_motion(given / "a.csv", np.arange(20) / 50, shown)
+    (given / "a.lab").write_text("0 0.108 sil\n0.108 0.192 M\n0.192 0.4 ah0\n0.4 0.5 P\n")
+    assert main(["plot", str(given / "a.csv"), "--phones", str(given / "a.lab"), "-o", str(given / "out.png")]) == 0
+    assert capsys.readouterr().out == "a: least opening in each p, b, m: M 20\n"
 
 
 @pytest.mark.parametrize(("arguments", "message"), [
@@ -347,6 +352,40 @@ def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, opening: Path, sta
     assert opened == pytest.approx(0.5 * outputs(face("vrm"), FAPS)["aa"], abs=0.001) and opened.max() > 0.2
 
 
+def test_points_that_are_not_found_are_named(tmp_path: Path, opening: Path, stand_in: Path,
+                                             capsys: pytest.CaptureFixture[str]) -> None:
+    """A jaw that tears no seam: what `labial fit` needs to be told, a page is told likewise."""
+    vertices, triangles, shapes = made_head()
+    down = np.clip((20.0 - vertices[:, 1]) / 60.0, 0.0, 1.0)
+    path, out = tmp_path / "a.glb", tmp_path / "page.html"
+    shapes["jawOpen"] = -20.0 * down[:, None] * np.eye(3)[1]
+    path.write_bytes(glb(*document_of(vertices, triangles, shapes)))
+    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
+    command = ["page", str(opening), "--head", str(path), "--rig", str(tmp_path / "mine.toml"), "--three",
+               str(stand_in), "-o", str(out)]
+    assert main(command) == 1 and not out.exists()
+    error = capsys.readouterr().err
+    names = re.search(r"the seam of the lips was not found: name (.*) with --point", error)[1].split(", ")
+    nearest = {point: int(np.argmin(np.linalg.norm(vertices[:, :2] - place, axis=1))) for point, place in TRUE.items()}
+    assert main(command + [item for name in names for item in ("--point", f"{name}={nearest[name]}")]) == 0
+    data = json.loads(re.search(r'id="data">(.*?)</script>', out.read_text(encoding="utf-8"), re.DOTALL)[1])
+    assert data["shapes"] == ["jawOpen"]
+    assert np.mean(data["corners"], axis=0) == pytest.approx([0.0, 0.0, data["corners"][0][2]], abs=0.002)
+
+
+def test_shapes_whose_names_clash_are_told_apart(tmp_path: Path, opening: Path, stand_in: Path) -> None:
+    """A fitted rig numbers what a description cannot tell apart; a page moves the shape that is meant."""
+    vertices, triangles, shapes = made_head()
+    path, out = tmp_path / "a.glb", tmp_path / "page.html"
+    named = {"mouthOpen": shapes["jawOpen"], "Lip O": shapes["mouthPucker"], "lip_o": shapes["mouthClose"]}
+    path.write_bytes(glb(*document_of(vertices, triangles, named)))
+    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.Lip_O_2]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
+    assert main(["page", str(opening), "--head", str(path), "--rig", str(tmp_path / "mine.toml"), "--three",
+                 str(stand_in), "-o", str(out)]) == 0
+    data = json.loads(re.search(r'id="data">(.*?)</script>', out.read_text(encoding="utf-8"), re.DOTALL)[1])
+    assert data["shapes"] == ["Lip O"]
+
+
 def test_errors_say_what_to_do(tmp_path: Path, opening: Path, avatar: Path, stand_in: Path,
                                monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """One line each, and no page."""
@@ -359,7 +398,9 @@ def test_errors_say_what_to_do(tmp_path: Path, opening: Path, avatar: Path, stan
         (["--head", str(avatar), "--three", str(tmp_path)], "is not the npm package three"),
         (["--head", str(opening), *three], "is not a whole .glb"),
         (["--head", str(avatar), "--rig", str(tmp_path / "rig.toml"), *three], "none of the rig's shapes, beak"),
-        (three, "--rig and --three go with --head"),
+        (three, "--rig, --point and --three go with --head"),
+        (["--point", "chin=1"], "--rig, --point and --three go with --head"),
+        (["--head", str(avatar), "--point", "ear=3", *three], "no point is called 'ear'"),
     ):
         assert main(["page", str(opening), "-o", out, *options]) == 1
         error = capsys.readouterr().err
@@ -391,72 +432,3 @@ def test_the_head_moves_in_a_browser(tmp_path: Path, opening: Path, avatar: Path
     page.evaluate("document.querySelector('button').click()")
     page.wait_for("document.querySelector('input').value === '4'", 20)
 
-
-# ---- The figure that draws several models' motion for one stream of phonemes -----------------------------------------
-
-
-TIMINGS = "0.000 0.200 SIL\n0.200 0.300 P1\n0.300 0.400 P2\n0.400 0.520 P1\n0.520 0.900 P4\n"
-
-
-@pytest.fixture
-def files(tmp_path) -> Path:
-    classes = ("silence", "bilabial", "class 2", "class 3")  # P1 and P5 close the lips
-    for name, method in (("old", "paper"), ("new", "labial")):
-        model = replace(random_model(1, method), classes=classes)
-        if method == "labial":
-            floor = model.floor.copy()
-            floor[1] = floor[5] = np.arange(13.0)
-            model = replace(model, floor=floor)
-        save(model, tmp_path / f"{name}.npz")
-    save(replace(random_model(1), fps=25), tmp_path / "slow.npz")
-    (tmp_path / "timings.lab").write_text(TIMINGS)
-    return tmp_path
-
-
-def run(files: Path, output: str, *models: str) -> int:
-    return side_by_side.main([str(files / "timings.lab"), "-o", str(files / output),
-                              *(f"{name}={files / name}.npz" for name in models)])  # fmt: skip
-
-
-@pytest.mark.slow
-def test_the_same_figure_every_time_with_all_models_and_phonemes(files, capsys) -> None:
-    # Catches dates and random names in the file, a model or a phoneme that is left out.
-    assert run(files, "one.svg", "old", "new") == 0 and run(files, "two.svg", "old", "new") == 0
-    text = (files / "one.svg").read_text(encoding="utf-8")
-    assert text == (files / "two.svg").read_text(encoding="utf-8")
-    written = re.findall(r">([^<>]+)</text>", text)
-    assert {"old", "new", "SIL", "P2", "P4"} <= set(written) and written.count("P1") == 2
-    assert "firm contact: -7" in capsys.readouterr().out  # FAP 51 and 52 are channels 3 and 4
-    assert run(files, "one.png", "new") == 0 and (files / "one.png").read_bytes()[:4] == b"\x89PNG"
-
-
-def test_the_least_distance_is_that_of_the_closures_own_frames(files) -> None:
-    models = {name: side_by_side.load(files / f"{name}.npz") for name in ("old", "new")}
-    drawn = side_by_side.synthesise_all(files / "timings.lab", models)
-    assert [item.label for item in drawn.closing] == ["P1", "P1"]
-    begin = sum(frame_counts([200], 50))
-    assert drawn.motion["new"].shape == (45, 4)
-    first, second = side_by_side.least(drawn, "new")
-    assert first == drawn.motion["new"][begin : begin + 5, 0].min()
-    assert second == drawn.motion["new"][20:26, 0].min()
-
-
-def test_each_method_moves_in_its_own_way(files) -> None:
-    """The published method unit by unit, to the letter; Labial as the run-time does."""
-    models = {name: side_by_side.load(files / f"{name}.npz") for name in ("old", "new")}
-    drawn = side_by_side.synthesise_all(files / "timings.lab", models)
-    given = [(0, 200), (1, 100), (2, 100), (1, 120), (4, 380)]
-    for name, synthesise in (("old", published.synthesise), ("new", stream.synthesise)):
-        motion = synthesise(FloatTables(models[name]), given)
-        np.testing.assert_array_equal(drawn.motion[name], labial_parameters(motion))
-    other = labial_parameters(stream.synthesise(FloatTables(models["old"]), given))
-    assert np.abs(drawn.motion["old"] - other).max() > 1
-
-
-def test_models_that_cannot_be_compared_are_told(files, capsys) -> None:
-    assert run(files, "x.svg", "new", "slow") == 1
-    assert "slow: its phonemes or its frame rate" in capsys.readouterr().err
-    for wrong in (["new.npz"], ["a=x.npz", "a=y.npz"], ["=x.npz"]):
-        assert side_by_side.main([str(files / "timings.lab"), "-o", str(files / "x.svg"), *wrong]) == 1
-        assert "NAME=MODEL.npz" in capsys.readouterr().err
-    assert not (files / "x.svg").exists()

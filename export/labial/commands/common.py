@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import argparse
 import sys
+from array import array
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
 from labial.files.arguments import number, positive
+from labial.files.faps import CHANNELS
 from labial.files.grammar import read_text
 from labial.files.outputs import writing
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from labial.rig.animation import Format
+    from labial.rig.description import Rig as Description
 
 
 def add_kind(command: argparse.ArgumentParser) -> None:
@@ -68,6 +73,35 @@ def add_format(command: argparse.ArgumentParser) -> None:
                          "as labial rig reads it")
 
 
+class Limited:
+    """A rig's outputs within their limits of speed, as the library moves them, from rest on."""
+
+    def __init__(self, rig: Description) -> None:
+        from labial.runtime.rig import Rig
+
+        self._unit, self._ahead, self._shown = rig.unit, Rig.of(rig), Rig.of(rig)
+        self._follow = [number for number, output in enumerate(rig.outputs) if output.visemes]
+
+    def __call__(self, frames: np.ndarray, shares: Optional[np.ndarray], first: int) -> Dict[str, np.ndarray]:
+        """What ``animation.outputs`` gives, for frames from number `first` on, which go on from those before. They look
+        ahead as far as the last of them; outputs that follow sounds do not."""
+        import numpy as np
+
+        if first == 0:  # another motion
+            self._ahead.rest()
+            self._shown.rest()
+        faps = array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
+        found = np.array(self._ahead.play(faps, 65535), dtype=np.float64) / self._unit.scale
+        found = found.reshape(len(frames), len(self._ahead.outputs))
+        if self._follow and shares is not None:
+            weighed = np.rint(128 * shares).astype(int).tolist()
+            scale = 1.0 if self._unit.name == "weight" else self._unit.scale
+            shown = [list(self._shown.apply(faps[CHANNELS * k : CHANNELS * (k + 1)], visemes=row).values())
+                     for k, row in enumerate(weighed)]
+            found[:, self._follow] = np.array(shown).reshape(found.shape)[:, self._follow] / scale
+        return dict(zip(self._ahead.outputs, found.T))
+
+
 def format_of(options: argparse.Namespace) -> Format:
     """The format of frames that the options of :func:`add_format` name."""
     from labial.files.outputs import check_suffix
@@ -83,7 +117,9 @@ def format_of(options: argparse.Namespace) -> Format:
     name = Path(options.rig).stem
     if name in ("frame", "time", "faps"):
         raise LabialError(f"{options.rig}: {name!r} is taken in a line of JSON: name the file otherwise")
-    return FORMATS[options.to].of_rig(read(options.rig, name))
+    rig = read(options.rig, name)
+    slow = any(output.slew or output.acceleration or output.deadband for output in rig.outputs)
+    return FORMATS[options.to].of_rig(rig, Limited(rig) if slow else None)
 
 
 def add_labels(command: argparse.ArgumentParser) -> None:

@@ -61,22 +61,22 @@ def add_fit(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", required=True, metavar="NAME.toml", help="the rig; NAME.png is its picture")
     command.add_argument("--shapes", metavar="KIND", help="arkit, oculus, vrm or other, or names of shapes with commas "
                          "between them; found out from the names without it")
-    command.add_argument("--point", action="append", default=[], metavar="NAME=INDEX", help="the vertex of a point "
-                         "that is not found by itself, such as chin=1234; may be given several times")
+    _add_points(command)
     command.add_argument("--no-figure", action="store_true", help="do not draw NAME.png")
 
 
-def _points(options: argparse.Namespace) -> Dict[str, int]:
-    from labial.errors import LabialError
+def _add_points(command: argparse.ArgumentParser, which: str = "") -> None:
+    command.add_argument("--point", action="append", default=[], metavar="NAME=INDEX", help=f"{which}the vertex of a "
+                         "point that is not found by itself, such as chin=1234; may be given several times")
 
+
+def _points(options: argparse.Namespace) -> Dict[str, int]:
     found = {}
     for given in options.point:
         name, equals, number = given.partition("=")
         if not equals or not number.isdecimal():
             raise LabialError(f"--point is NAME=INDEX, not {given!r}")
         found[name] = int(number)
-    if found and len(options.avatar) > 1:
-        raise LabialError("--point goes with one avatar")
     return found
 
 
@@ -94,6 +94,8 @@ def run_fit(options: argparse.Namespace) -> int:
         from labial.fit.fit import fit
     check_folder(output.parent, output)
     points = _points(options)
+    if points and len(options.avatar) > 1:
+        raise LabialError("--point goes with one avatar")
     done = fit(options.avatar, points, options.shapes, output.stem)
     names = [output.name]
     with folder(output.parent, output) as made:  # the rig and its picture appear together
@@ -122,15 +124,20 @@ def add_plot(command: argparse.ArgumentParser) -> None:
 
 
 def run_plot(options: argparse.Namespace) -> int:
-    """Writes the drawing."""
+    """Writes the drawing, and prints how far the lips are apart in each closure."""
     with needs("plotting", "plot"):
         from labial.see.plot import DEFAULT, plot
     from labial.files.outputs import check
-    from labial.see.motion import read_bands, read_motions
+    from labial.see.motion import closures, read_bands, read_motions
 
     check(options.output)
     timings = _timings(options)
-    plot(read_motions(options.frames, *timings), read_bands(*timings), options.output, options.channels or DEFAULT)
+    motions, bands = read_motions(options.frames, *timings), read_bands(*timings)
+    plot(motions, bands, options.output, options.channels or DEFAULT)
+    for motion in motions:
+        if least := closures(motion, bands):
+            print(f"{motion.name}: least opening in each p, b, m: "
+                  + " ".join(f"{label} {opening:.0f}" for label, opening in least))
     return 0
 
 
@@ -152,6 +159,7 @@ def add_page(command: argparse.ArgumentParser) -> None:
     command.add_argument("--audio", metavar="FILE", help="sound in step: WAV, MP3, Ogg, FLAC, AAC, M4A or WebM")
     command.add_argument("--head", metavar="AVATAR.glb", help="show this avatar instead of a drawn mouth")
     command.add_argument("--rig", metavar="FACE.toml", help="with --head: what moves it, such as labial fit writes")
+    _add_points(command, "with --head: ")
     command.add_argument("--three", metavar="DIR", help="with --head: the npm package three; node_modules/three "
                          "without it")
     command.add_argument("--title", help="the file's name without it")
@@ -169,12 +177,13 @@ def run_page(options: argparse.Namespace) -> int:
     timings = _timings(options)
     bands, motion = read_bands(*timings), read_motion(options.frames, *timings)
     if options.head is None:
-        if options.rig is not None or options.three is not None:
-            raise LabialError("--rig and --three go with --head")
+        if options.rig is not None or options.three is not None or options.point:
+            raise LabialError("--rig, --point and --three go with --head")
         text = page(motion, bands, options.audio, options.title)
     else:
         from labial.see.page import head_page
 
-        text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three)
+        text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three,
+                         _points(options))
     put(text, options.output)
     return 0

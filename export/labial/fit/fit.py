@@ -5,25 +5,35 @@ from __future__ import annotations
 import os
 import re
 import tempfile
+from dataclasses import replace
 from pathlib import Path
-from typing import List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
-from labial.fit.kinds import KINDS, kind_of, prepare
+from labial.fit.kinds import KINDS, kind_of, prepare, unknown
 from labial.fit.landmarks import Found, read_head
-from labial.fit.meaning import judge, matrix
+from labial.fit.meaning import crooked, judge, matrix
+from labial.fit.names import own
 from labial.fit.sentences import read_sentences
 from labial.fit.solve import FEATURES, Solution, solve
 from labial.program import one_line
 from labial.rig.animation import outputs
 from labial.rig.description import Rig, read
+from labial.rig.gestures import SOURCES
+from labial.rig.table import holds
+from labial.rig.units import make_unit
 
 #: Intensities of the laughs that are solved for, in addition to the sentences.
 _LAUGHS = (0.5, 1.0)
+#: Millimetres beyond the FAPs' meaning from which on a mouth that moves sideways, or whose corners differ in height,
+#: looks crooked.
+_CROOKED = 1.0
+#: Shapes that a line of the report names at most.
+_NAMED = 6
 
 
 class Fitted(NamedTuple):
@@ -31,7 +41,9 @@ class Fitted(NamedTuple):
 
     text: str  #: of the description
     rig: Rig
-    found: Optional[Found]  #: where the avatar's lips are; None for a table of lip points
+    #: Where the avatar's lips are, its mesh's shapes under the names of the rig's outputs; None for a table of lip
+    #: points, and for several avatars.
+    found: Optional[Found]
     report: List[str]  #: its accuracy, as lines of text
 
 
@@ -56,25 +68,41 @@ def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], 
     kind, only = _kind(shapes, heads[0])
     prepared = [prepare(head, kind, len(heads) == 1, only) for head in heads]
     order = prepared[0][0].shapes
+    for head, found in zip(heads, founds):
+        parts = {part for mouth in (found.mesh.parts.values() if found else ()) for part, _ in mouth}
+        missed = [] if only or kind == "other" else [shape for shape in unknown(head) if shape not in parts]
+        if missed:
+            report.append(f"{head.name}: not used, though they move the lips: {_listed(missed)}; --shapes names those "
+                          "to use")
     solution = solve([head.only(order) for head, _, _ in prepared], read_sentences(laughs=_LAUGHS), prepared[0][2])
     files = prepared[0][1]  # the avatar's own names
     remarks = [f"Solved by `labial fit` for {', '.join(Path(path).name for path in paths)}."]
-    own = [files[shape] for shape in order]
-    strange = {shape: f"in the file: {shape}" for shape in own if output_name(shape) != shape}
-    if len({output_name(shape) for shape in own}) < len(own):
-        raise LabialError("two shapes have the same name but for what a description cannot spell: name those to use "
-                          "with --shapes")
-    text = describe(solution, own, remarks, strange)
-    rig = _read_back(text, name)
+    spelled = output_names(heads[0].shapes)
+    strange = {shape: f"in the file: {shape}" for shape in files.values() if spelled[shape] != shape}
+    text = describe(solution, [files[shape] for shape in order], remarks, strange, spelled)
+    rig = _read_back(text, name, paths[0])
     report.append(f"{len(rig.outputs)} of {len(order)} shapes are used, of the kind {kind}")
     motion = read_sentences()
     weights = outputs(rig, motion.frames)
     for head, (_, names, _) in zip(heads, prepared):
         # Judges the written description, on the head's own shapes.
-        by_shape = {names[canonical]: weights[output_name(files[canonical])] for canonical in names
-                    if output_name(files.get(canonical, "")) in weights}
-        report.append(f"{head.name}: {judge(head, matrix(head, by_shape), motion.frames, motion.closures).text()}")
-    return Fitted(text, rig, founds[0] if len(founds) == 1 else None, report)
+        placed = matrix(head, {names[canonical]: weights[spelled[files[canonical]]] for canonical in names
+                               if canonical in files and spelled[files[canonical]] in weights})
+        report.append(f"{head.name}: {judge(head, placed, motion.frames, motion.closures).text()}")
+        aside, tilt = crooked(head, placed, motion.frames)
+        if max(aside, tilt) > _CROOKED:
+            report.append(f"  in doubt: the mouth moves up to {aside:.1f} mm sideways, and its corners differ by up to "
+                          f"{tilt:.1f} mm in height: left and right shapes differ, or one of a pair is missing")
+    found = founds[0] if len(founds) == 1 else None
+    if found:
+        mesh = found.mesh
+        found = found._replace(mesh=replace(mesh, shapes={spelled[shape]: mesh.shapes[shape] for shape in mesh.shapes}))
+    return Fitted(text, rig, found, report)
+
+
+def _listed(shapes: Sequence[str]) -> str:
+    more = f" and {len(shapes) - _NAMED} more" if len(shapes) > _NAMED else ""
+    return one_line(", ".join(shapes[:_NAMED]) + more)
 
 
 def _read(path: str, points: Mapping[str, int]) -> Tuple[Head, Optional[Found]]:
@@ -94,11 +122,15 @@ def _kind(shapes: Optional[str], head: Head) -> Tuple[str, Sequence[str]]:
     return "other", [shape.strip() for shape in shapes.split(",")]
 
 
-def _read_back(text: str, name: str) -> Rig:
+def _read_back(text: str, name: str, avatar: str) -> Rig:
+    """The rig that the text describes; errors name the avatar, not a file that is gone."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, f"{name}.toml")
         Path(path).write_text(text, encoding="utf-8")
-        return read(path, name)
+        try:
+            return replace(read(path, name), path=avatar)
+        except LabialError as error:
+            raise LabialError(str(error).replace(path, f"{avatar}: its rig", 1)) from None
 
 
 # ---- A solution as a description that labial rig reads ---------------------------------------------------------------
@@ -109,11 +141,41 @@ _CORNERS = {"left": ("stretch_l_cornerlip_o", "raise_l_cornerlip_o"),
 _LEAST = 0.002
 
 
+#: Most letters of an output's name, and names that a description refuses, in capitals.
+_LONGEST, _REFUSED = 32, ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE")
+
+
 def output_name(shape: str) -> str:
-    """The name of a shape in a description: without the part before the last dot, with underscores for characters that
-    C does not allow."""
-    name = re.sub(r"[^0-9A-Za-z_]", "_", shape.rsplit(".", 1)[-1].strip())
-    return (name if re.match(r"[A-Za-z]", name) else "shape_" + name)[:32]
+    """The name of a shape in a description: without its mesh's, which stands before a dot, with underscores for
+    characters that C does not allow."""
+    return _spelled(shape)[:_LONGEST]
+
+
+def _spelled(shape: str) -> str:
+    name = re.sub(r"[^0-9A-Za-z_]", "_", own(shape).strip())
+    return name if re.match(r"[A-Za-z]", name) else "shape_" + name
+
+
+def output_names(shapes: Sequence[str]) -> Dict[str, str]:
+    """The names of a mesh's shapes in a description, by shape: `output_name`. Where these would be the same but for
+    capitals, names that are too long lose the words that they begin with alike; others get a number."""
+    alike: Dict[str, List[str]] = {}
+    for shape in shapes:
+        alike.setdefault(output_name(shape).upper(), []).append(_spelled(shape))
+    found: Dict[str, str] = {}
+    taken = set(_REFUSED)
+    for shape in sorted(shapes, key=lambda shape: output_name(shape) != shape):  # what needs no change keeps its name
+        name, whole = output_name(shape), _spelled(shape)
+        rivals = alike[name.upper()]
+        if len(rivals) > 1 and len(whole) > _LONGEST:
+            name = output_name(whole[os.path.commonprefix(rivals).rfind("_") + 1:])
+        first, number = name, 1
+        while name.upper() in taken:
+            number += 1
+            name = f"{first[: _LONGEST - len(str(number)) - 1]}_{number}"
+        taken.add(name.upper())
+        found[shape] = name
+    return found
 
 
 def _sources(side: str, slopes: np.ndarray) -> List[Tuple[str, float]]:
@@ -130,26 +192,39 @@ def _sources(side: str, slopes: np.ndarray) -> List[Tuple[str, float]]:
     return named
 
 
+def _mixed(sources: Sequence[Tuple[str, float]], neutral: float) -> Tuple[str, str]:
+    """The text of `from` and that of `reach`. The least coefficients are left out, and more of them where a table
+    cannot hold all."""
+    largest = max(abs(slope) for _, slope in sources)
+    reach = f"{(1.0 - neutral) * 1024.0 / largest:.1f}"
+    shares = [(name, f"{slope / largest:.3f}") for name, slope in sources if abs(slope) >= _LEAST * largest]
+    scale = make_unit("weight").scale
+    while True:
+        weights = np.sum([float(share) * np.array(SOURCES[name].weights) for name, share in shares], axis=0)
+        least = min(abs(float(share)) for _, share in shares)
+        fewer = [(name, share) for name, share in shares if abs(float(share)) > least]
+        if not fewer or holds(tuple(weights.tolist()), (1.0 - neutral) / float(reach) * scale):
+            return ", ".join(f"{name} = {share}" for name, share in shares), reach
+        shares = fewer
+
+
 def describe(solution: Solution, shapes: Sequence[str], remarks: Sequence[str], notes: Mapping[str, str],
-             keep: Sequence[str] = ()) -> str:
-    """The text of a description. `remarks` are its first lines, `notes` a remark beside a shape; shapes that never move
-    are left out, except those of `keep`."""
+             names: Mapping[str, str]) -> str:
+    """The text of a description. `remarks` are its first lines, `notes` a remark beside a shape, `names` those of the
+    outputs; shapes that never move are left out."""
     lines = [f"# {one_line(remark)}".rstrip() for remark in remarks]
     lines.append('unit = "weight"')
     for number, group in enumerate(solution.groups):
         for place, side in group.members:
             named = _sources(side, solution.slopes[number])
-            largest = max(abs(slope) for _, slope in named)
-            if largest == 0.0:
+            if not any(slope for _, slope in named):
                 continue
-            mixed = ", ".join(f"{name} = {slope / largest:.3f}" for name, slope in named
-                              if abs(slope) >= _LEAST * largest)
-            note = notes.get(shapes[place], notes.get(group.name, "")) if side != "right" else ""
+            note = notes.get(shapes[place], "")
             neutral = min(round(float(solution.offsets[number]), 4), 0.0)
+            mixed, reach = _mixed(named, neutral)
             cap = float(solution.caps[number])
-            lines += ["", f"[output.{output_name(shapes[place])}]" + (f"    # {one_line(note)}" if note else ""),
-                      f"from = {{ {mixed} }}", f"neutral = {neutral:g}", "full = 1",
-                      f"reach = {(1.0 - neutral) * 1024.0 / largest:.1f}", "minimum = 0"]
+            lines += ["", f"[output.{names[shapes[place]]}]" + (f"    # {one_line(note)}" if note else ""),
+                      f"from = {{ {mixed} }}", f"neutral = {neutral:g}", "full = 1", f"reach = {reach}", "minimum = 0"]
             if cap < 1.0:
                 lines.append(f"maximum = {cap:g}")
     return "\n".join(lines) + "\n"

@@ -9,14 +9,17 @@ from __future__ import annotations
 
 import re
 import warnings
-from typing import Dict, List, Mapping, NamedTuple, Sequence, Tuple
+from typing import Dict, Iterator, List, Mapping, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.head import Head
-from labial.fit.landmarks import plain
+from labial.fit.names import plain, sided
+from labial.fit.sides import of_head
 from labial.fit.solve import FEATURES, Wishes
+from labial.rig.animation import LIVE_LINK
+from labial.tables.visemes import VISEMES
 
 #: What raises the lower lip further than the jaw carries it while the upper lip stays: f and v. Weight per FAP / 1024.
 _TO_THE_TEETH = {"jaw": 4.3, "lower_lip": -4.3, "upper_lip": 6.0, "offset": -0.28}
@@ -77,8 +80,8 @@ _LEAST = 1.0
 _MANY, _MOST = 40, 200
 
 
-def known(head: Head, kind: str) -> Dict[str, str]:
-    """The head's shapes of a kind, by the head's name for them: the kind's name, ``Left`` and ``Right`` included."""
+def _names(kind: str) -> Dict[str, str]:
+    """The kind's names of shapes, ``Left`` and ``Right`` included, by every plain name that they have."""
     names = {}
     for group in KINDS[kind].allowed:
         for ending in ("", "Left", "Right"):
@@ -90,17 +93,38 @@ def known(head: Head, kind: str) -> Dict[str, str]:
     for other, name in _ALSO.items():
         if name in KINDS[kind].allowed:
             names[other] = name
+    return names
+
+
+def _spellings(shape: str) -> Iterator[str]:
+    """Plain names that a shape goes by: its own, and ARKit's if it tells a side otherwise, as ``L_mouthSmile`` does."""
+    yield plain(shape)
+    for base, side in sided(shape):
+        yield base + side
+
+
+def known(head: Head, kind: str) -> Dict[str, str]:
+    """The head's shapes of a kind, by the head's name for them: the kind's name, ``Left`` and ``Right`` included."""
+    names = _names(kind)
     found: Dict[str, str] = {}
     for shape in head.shapes:
-        known = names.get(plain(shape))
+        known = next((names[name] for name in _spellings(shape) if name in names), None)
         if known is not None and known not in found.values():
             found[shape] = known
     return found
 
 
+def unknown(head: Head) -> List[str]:
+    """The shapes that move the lips, and whose names are neither ARKit's nor those of another kind."""
+    names = {plain(column) for column in LIVE_LINK}.union(*map(_names, KINDS))
+    names.update(prefix + plain(viseme) for viseme in VISEMES for prefix in ("", "viseme"))
+    return [shape for shape in _moving(head) if names.isdisjoint(_spellings(shape))]
+
+
 def shapes_for(head: Head, kind: str, outputs: Sequence[str]) -> Dict[str, str]:
     """The head's shape for each output of the built-in rig of a kind, as far as it has them."""
-    named = {plain(shape): shape for shape in reversed(head.shapes)}
+    named = {name: shape for shape in reversed(head.shapes) for name in _spellings(shape)}
+    named.update({plain(shape): shape for shape in reversed(head.shapes)})
     found = {}
     for output in outputs:
         names = [plain(output)]
@@ -152,11 +176,15 @@ def prepare(head: Head, kind: str, single: bool, only: Sequence[str] = ()) -> Tu
     renamed = Head(head.name, tuple(names.values()), picked.rest, picked.moves)
     wishes = Wishes(shut=0.0 if single else -0.5, deep=-1.5 if single else -1.9,
                     coefficients=30 if kind == "oculus" else 24, caps=rules.caps, costs=rules.costs,
-                    allowed=rules.allowed, fixed=rules.fixed)
+                    allowed=rules.allowed, fixed=rules.fixed, pairs=of_head(picked) if kind == "other" else None)
     return renamed, {name: shape for shape, name in names.items()}, wishes
 
 
 def _moving(head: Head) -> List[str]:
     lips = [point for point in head.rest if point not in ("nose", "chin")]
     size = np.max([np.linalg.norm(head.moves[point], axis=1) for point in lips], axis=0)
-    return [shape for shape, move in zip(head.shapes, size) if move >= _LEAST]
+    used = {shape for shape, move in zip(head.shapes, size) if move >= _LEAST}
+    for pair in of_head(head):
+        if not used.isdisjoint(pair):
+            used.update(pair)  # one of a pair may move the lips a little less than the other
+    return [shape for shape in head.shapes if shape in used]

@@ -7,7 +7,6 @@ The outer lips, the nose's base and the chin are features of the profile on the 
 
 from __future__ import annotations
 
-import re
 from typing import Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 import numpy as np
@@ -15,7 +14,8 @@ import numpy as np
 from labial.errors import DataError
 from labial.files import limits
 from labial.fit.avatar import Mesh
-from labial.fit.head import POINTS, USUAL_MNS, Head, from_points
+from labial.fit.head import NEEDED, POINTS, USUAL_MNS, Head, from_points
+from labial.fit.names import plain
 
 #: Shapes that open the mouth, the plainest first; compared without case, prefixes and punctuation.
 _OPENERS = ("jawopen", "visemeaa", "fclmtha", "aa", "mouthopen", "a", "open")
@@ -42,11 +42,6 @@ class Found(NamedTuple):
     scale: float  #: millimetres per unit of the file
     doubts: List[str]  #: warnings
     mesh: Mesh
-
-
-def plain(name: str) -> str:
-    """A shape's name for comparing: lower case, letters and digits, without what comes before the last dot."""
-    return re.sub(r"[^a-z0-9]", "", name.rsplit(".", 1)[-1].lower())
 
 
 def opener(mesh: Mesh) -> Optional[str]:
@@ -168,8 +163,7 @@ def _inner(face: _Face, where: str) -> Tuple[int, int]:
             front = face.points[upper][near[:, 0], 2] + face.points[lower][near[:, 1], 2]
             best = near[np.argmax(front - 1.5 * apart[near[:, 0], near[:, 1]])]
             return int(upper[best[0]]), int(lower[best[1]])
-    raise DataError(where, None, "the seam of the lips was not found: name inner_upper, inner_lower and the other "
-                                 "points with --point")
+    raise DataError(where, None, f"the seam of the lips was not found: name {', '.join(NEEDED)} with --point")
 
 
 def _seam(face: _Face, upper: int, lower: int, sign: float) -> List[Tuple[int, int]]:
@@ -294,7 +288,7 @@ def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found
     try:
         vertices = find(mesh, where)
     except DataError:
-        if not all(point in given for point in ("inner_upper", "inner_lower", "corner_left", "corner_right", "nose")):
+        if not all(point in given for point in NEEDED):
             raise
         vertices = {}
     vertices.update(given)

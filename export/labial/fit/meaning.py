@@ -98,9 +98,10 @@ class Figures(NamedTuple):
 
     def text(self) -> str:
         """One line."""
+        jaw = f"{self.jaw:.2f}" if np.isfinite(self.jaw) else "unmeasured (no chin)"
         return (f"opening {self.shown:.1f} mm of {self.meant:.1f} ({self.ratio:.2f}); errors, mm: opening "
                 f"{self.opening:.2f}, width {self.width:.2f}, corners {self.corners:.2f}, upper lip {self.upper:.2f}, "
-                f"lower lip {self.lower:.2f}, jaw {self.jaw:.2f}, forward {self.forward:.2f}; p, b, m closed "
+                f"lower lip {self.lower:.2f}, jaw {jaw}, forward {self.forward:.2f}; p, b, m closed "
                 f"{self.closed:.3f}, through each other {self.through:.3f}, deepest {self.deepest:.1f} mm")
 
 
@@ -114,6 +115,16 @@ def opening(head: Head, weights: np.ndarray) -> np.ndarray:
     result: np.ndarray = (head.rest["inner_upper"] - head.rest["inner_lower"])[1] + weights @ (
         head.moves["inner_upper"] - head.moves["inner_lower"])[:, 1]
     return result
+
+
+def crooked(head: Head, weights: np.ndarray, frames: np.ndarray) -> Tuple[float, float]:
+    """Most millimetres by which (T, K) weights move the mouth sideways, and by which its corners differ in height,
+    beyond what the (T, 13) frames mean."""
+    points = shown(head, weights)
+    left, right = (points[f"corner_{side}"] - head.rest[f"corner_{side}"] for side in ("left", "right"))
+    aside = (left + right)[:, 0] / 2.0 - (fap(frames, 53) - fap(frames, 54)) * head.mw / 2048.0
+    tilt = (left - right)[:, 1] - (fap(frames, 59) - fap(frames, 60)) * head.mns / 1024.0
+    return float(np.abs(aside).max()), float(np.abs(tilt).max())
 
 
 def matrix(head: Head, weights: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -17,21 +17,21 @@ useful coefficients, one at a time.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
-from typing import Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.fit.head import Head
 from labial.fit.meaning import fap, rows
 from labial.fit.sentences import Motion
+from labial.fit.sides import Pair, by_names
 
 #: What an output may follow, in the names of a description; per side, with left and right alike.
 FEATURES: Tuple[str, ...] = ("jaw", "push_b_lip", "push_t_lip", "upper_lip", "lower_lip", "spread", "corner")
 #: Their spread in speech, FAP units / 1024: coefficients are compared after this.
 _SPREAD = np.array([0.10, 0.06, 0.04, 0.05, 0.13, 0.02, 0.05])
-
-_SIDES = (("Left", "Right"), ("_left", "_right"), ("_L", "_R"), ("_l", "_r"))
 
 
 @dataclass(frozen=True)
@@ -64,26 +64,21 @@ class Wishes:
     allowed: Optional[Mapping[str, Sequence[str]]] = None  #: features of a group, default all
     #: Groups that are not solved for: weight per FAP unit / 1024 of each feature, and "offset".
     fixed: Optional[Mapping[str, Mapping[str, float]]] = None
+    pairs: Optional[Sequence[Pair]] = None  #: left and right shapes, default those whose names say so
 
 
-def groups_of(shapes: Sequence[str]) -> List[Group]:
-    """The shapes, left and right ones together."""
+def groups_of(shapes: Sequence[str], pairs: Optional[Sequence[Pair]] = None) -> List[Group]:
+    """The shapes, left and right ones together; a group of two is called by what their names begin with."""
     place = {name: number for number, name in enumerate(shapes)}
-    found: List[Group] = []
-    taken: Set[str] = set()
+    pair_of = {name: pair for pair in (by_names(shapes) if pairs is None else pairs)
+               if pair[0] in place and pair[1] in place for name in pair}
+    found: Dict[Tuple[str, ...], Group] = {}
     for name in shapes:
-        if name in taken:
-            continue
-        for left, right in _SIDES:
-            other = name[: -len(left)] + right
-            if name.endswith(left) and other in place:
-                found.append(Group(name[: -len(left)], ((place[name], "left"), (place[other], "right"))))
-                taken.update((name, other))
-                break
-        else:
-            found.append(Group(name, ((place[name], "middle"),)))
-            taken.add(name)
-    return found
+        members = pair_of.get(name, (name,))
+        sides = ("left", "right") if len(members) == 2 else ("middle",)
+        found.setdefault(members, Group(os.path.commonprefix(members) or name,
+                                        tuple((place[member], side) for member, side in zip(members, sides))))
+    return list(found.values())
 
 
 def features(frames: np.ndarray) -> Dict[str, np.ndarray]:
@@ -108,7 +103,7 @@ class Problem:
         keep[::3] = True  # neighbouring frames are nearly equal
         frames = motion.frames[keep].astype(np.float64)
         self.contact, self.wishes, self.count = contact[keep], wishes, len(frames)
-        self.groups = groups_of(shapes)
+        self.groups = groups_of(shapes, wishes.pairs)
         self.x = features(frames)
         self.heads = []
         for head in heads:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import functools
 import json
 import re
-from array import array
 from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, Sequence, TextIO, Tuple
 
 from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NUMBERS
@@ -82,6 +81,11 @@ def _fap_head(name: str, fps: int, count: int) -> str:
     return f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {count}\n"
 
 
+#: Gives values by output for frames (n, 13), shares of their sounds (n, 15) if they are known, and the number of the
+#: first frame, like `outputs`.
+Mover = Callable[["np.ndarray", Optional["np.ndarray"], int], Dict[str, "np.ndarray"]]
+
+
 def _parts_of(frames: np.ndarray) -> Tuple[np.ndarray, Optional[np.ndarray]]:
     """The FAPs of frames, and the shares of their sounds if they are known."""
     return frames[:, :CHANNELS], frames[:, CHANNELS:] if frames.shape[1] > CHANNELS else None
@@ -124,44 +128,15 @@ def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> No
         out.write(",".join((timecode, str(len(LIVE_LINK)), *values)) + "\n")
 
 
-class _Limited:
-    """A rig's outputs within their limits of speed, as the library moves them, from rest on."""
-
-    def __init__(self, rig: Rig) -> None:
-        from labial.runtime.rig import Rig as Face
-
-        self._unit, self._ahead, self._shown = rig.unit, Face.of(rig), Face.of(rig)
-        self._follow = [number for number, output in enumerate(rig.outputs) if output.visemes]
-
-    def move(self, frames: np.ndarray, shares: Optional[np.ndarray], first: int) -> Dict[str, np.ndarray]:
-        """What `outputs` gives, for frames from number `first` on, which go on from those before. They look ahead as
-        far as the last of them; outputs that follow sounds do not."""
-        import numpy as np
-
-        if first == 0:  # another motion
-            self._ahead.rest()
-            self._shown.rest()
-        faps = array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
-        found = np.array(self._ahead.play(faps, 65535), dtype=np.float64) / self._unit.scale
-        found = found.reshape(len(frames), len(self._ahead.outputs))
-        if self._follow and shares is not None:
-            weighed = np.rint(128 * shares).astype(int).tolist()
-            scale = 1.0 if self._unit.name == "weight" else self._unit.scale
-            shown = [list(self._shown.apply(faps[CHANNELS * k : CHANNELS * (k + 1)], visemes=row).values())
-                     for k, row in enumerate(weighed)]
-            found[:, self._follow] = np.array(shown).reshape(found.shape)[:, self._follow] / scale
-        return dict(zip(self._ahead.outputs, found.T))
-
-
 def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Optional[Rig] = None,
-               with_faps: bool = True, limited: Optional[_Limited] = None) -> None:
+               with_faps: bool = True, move: Optional[Mover] = None) -> None:
     """One JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and under the rig's name
-    (ARKit's where none is given) its outputs, as `outputs` gives them, or as they are `limited`."""
+    (ARKit's where none is given) its outputs, as `outputs` gives them, or `move`."""
     import numpy as np
 
     rig = rig or face("arkit")
     frames, shares = _parts_of(frames)
-    values = limited.move(frames, shares, first) if limited else outputs(rig, frames, shares)
+    values = move(frames, shares, first) if move else outputs(rig, frames, shares)
     for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1)), first):
         out.write(json.dumps({
             "frame": number,
@@ -209,10 +184,9 @@ class Format(NamedTuple):
             self.rows(out, part, first, fps)
             first += len(part)
 
-    def of_rig(self, rig: Rig) -> Format:
-        """Lines of JSON with another rig than ARKit's, within its limits of speed if it has any."""
-        slow = any(output.slew or output.acceleration or output.deadband for output in rig.outputs)
-        return self._replace(rows=functools.partial(_json_rows, rig=rig, limited=_Limited(rig) if slow else None))
+    def of_rig(self, rig: Rig, move: Optional[Mover] = None) -> Format:
+        """Lines of JSON with another rig than ARKit's, which moves as `outputs` or as `move` has it."""
+        return self._replace(rows=functools.partial(_json_rows, rig=rig, move=move))
 
 
 #: Every format by its name, which ``--to`` takes.

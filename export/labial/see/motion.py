@@ -15,6 +15,7 @@ from labial.corpus.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
 from labial.errors import DataError, LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
+from labial.files.frames import opening
 from labial.files.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
 from labial.tables.bundled import is_model
 
@@ -141,6 +142,16 @@ def read_bands(
     segments = [segment for segment in read_timings(path, source, tier=tier) if segment.end > segment.start]
     phones = phone_set_of(segments, labels)
     return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
+
+
+def closures(motion: Motion, bands: Sequence[Band]) -> List[Tuple[str, float]]:
+    """The label of each p, b, m and the least distance of the lips in its frames, FAP units. A frame is of the phoneme
+    that its middle falls into."""
+    distance = opening(motion.frames)
+    middles = motion.times + (np.median(np.diff(motion.times)) / 2 if len(motion.times) > 1 else 0)
+    found = [(band.label, distance[(band.start <= middles) & (middles < band.end)])
+             for band in bands if band.kind == "closed"]
+    return [(label, float(values.min())) for label, values in found if values.size]
 
 
 def laughs(bands: Sequence[Band]) -> bool:

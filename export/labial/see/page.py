@@ -9,7 +9,7 @@ import math
 import os
 import warnings
 from pathlib import Path
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from labial.files import limits
 from labial.files.frames import even
 from labial.files.grammar import read_bytes
 from labial.fit.avatar import read as read_avatar
-from labial.fit.fit import output_name
+from labial.fit.fit import output_names
 from labial.fit.kinds import KINDS, kind_of, shapes_for
 from labial.fit.landmarks import Found, read_head
 from labial.fit.meaning import fap, matrix, opening
@@ -109,7 +109,7 @@ def _shapes(found: Found, rig: Optional[PathLike]) -> Tuple[Rig, Dict[str, str]]
     head = found.head
     if rig is not None:
         chosen = read(rig, Path(rig).stem)
-        named = {output_name(shape): shape for shape in head.shapes}
+        named = {name: shape for shape, name in output_names(head.shapes).items()}
     else:
         kind = kind_of(head)
         if kind not in KINDS:
@@ -134,14 +134,16 @@ def _warn(where: str, found: Found, weights: Dict[str, np.ndarray], frames: np.n
 
 
 def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, audio: Optional[PathLike] = None,
-              title: Optional[str] = None, three: Optional[PathLike] = None) -> str:
+              title: Optional[str] = None, three: Optional[PathLike] = None,
+              points: Optional[Mapping[str, int]] = None) -> str:
     """The page as text. `avatar` is a .glb or .vrm; `rig` a description, without which the built-in one of the avatar's
-    kind of shapes is taken; `audio` as `labial.see.page.page` has it; `three` the folder of the npm package three.
+    kind of shapes is taken; `audio` as `labial.see.page.page` has it; `three` the folder of the npm package three;
+    `points` are vertices by point, which need not be found.
 
     Raises DataError for a file that cannot be used and LabialError for an avatar that no rig moves.
     """
     where = os.fspath(avatar)
-    found = read_head(read_avatar(avatar, everything=True), where, {})
+    found = read_head(read_avatar(avatar, everything=True), where, points or {})
     chosen, used = _shapes(found, rig)
     content = read_bytes(avatar)
     if content[:4] != b"glTF":
