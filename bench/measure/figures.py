@@ -194,10 +194,9 @@ def method(source: Sources) -> Iterator[Sentence]:
     for limits in dict.fromkeys(key.rsplit(" ", 1)[0] for key in search):
         lag, width = limits.split()
         yield row(f"{lag} | {width}", decimal(search[f"{limits} states"], 2), decimal(search[f"{limits} motion"], 2))
-    yield sentence("In the {} p, b, m the published method leaves the lips {} to {} FAP units apart, Labial {} to {}; "
-                   "contact is {}.", word(int(pictured["Labial count"])),
-                   *(count(pictured[f"{who} {end}"]) for who in ("published", "Labial") for end in ("least", "most")),
-                   count(pictured["contact"]))
+    yield sentence("In the {} p, b, m the published method leaves the lips {} to {} FAP units apart, Labial {} to {},",
+                   word(int(pictured["speech_en count"])),
+                   *(count(pictured[f"{who} {end}"]) for who in ("paper", "speech_en") for end in ("least", "most")))
     for name in ("LAG", "SEARCHED"):
         yield sentence(f"`LABIAL_{name}` (default {{}})", count(source.limit(f"LABIAL_{name}")))
 

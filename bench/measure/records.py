@@ -62,10 +62,9 @@ def _rows(text: str) -> List[List[List[str]]]:
 
 def _side_by_side(text: str) -> Figures:
     found: Figures = {}
-    for name, distances in re.findall(r"^(\w+): least distance .*?: (.*)$", text, re.MULTILINE):
+    for name, distances in re.findall(r"^(\w+): least opening in each p, b, m: (.*)$", text, re.MULTILINE):
         values = [float(value) for value in distances.split()[1::2]]
         found.update({f"{name} least": min(values), f"{name} most": max(values), f"{name} count": len(values)})
-    found["contact"] = float(re.findall(r"firm contact: (-?\d+)", text)[0])
     return found
 
 
@@ -119,8 +118,8 @@ COMMANDS: Dict[str, Command] = {
     "search": Command(("python -m labial.evaluate.search speech_en export/corpora/grid_s1",), _search),
     "side by side": Command((
         "python -m labial train export/corpora/grid_s1 --method paper -o {}/paper.npz --quiet",
-        "python -m labial.evaluate.side_by_side examples/demo/sentence.flite published={}/paper.npz Labial=speech_en "
-        "-o docs/images/demo_paper_and_labial.svg",
+        "python -m labial plot speech_en {}/paper.npz --phones examples/demo/sentence.flite "
+        "--channels opening,stretch,fap17,fap16 -o docs/images/demo_paper_and_labial.svg",
     ), _side_by_side),
     "closures": Command((f"python bench/closures.py {_SENTENCES} {' '.join(VOICES)}",), _closures),
     "closures of awb": Command((f"python bench/closures.py {_SENTENCES} {OTHER_VOICE}",), _closures),

@@ -281,7 +281,8 @@ def faults(case: Case, new: Dict[str, bytes], mode: int, status: int, said: str)
         wrong.append(f"status {status}")
     said = "".join(line for line in said.splitlines(keepends=True) if not line.startswith("labial: warning: "))
     written = next(item for item in case.arguments if item.startswith("out"))
-    meant = [f"labial: {name}: " for name in (written, *(f"out/{name}" for name in case.targets))]
+    meant = [f"labial: {name}: " for name in (written, f"{written}.checkpoint",
+                                              *(f"out/{name}" for name in case.targets))]
     if status == 1 and (said.count("\n") != 1 or not said.startswith(tuple(meant))):
         wrong.append("says: " + said)
     if len(kinds) > 1 and not ("new" in said and "as before" in said):

@@ -417,8 +417,9 @@ def test_records_are_read_as_their_programs_print() -> None:
     laughs = "intensity 0: 68 50 88 98 36\nspeech: 628\n"
     assert records.COMMANDS["laughs"].read(laughs) == {"speech": 628.0, "0 largest": 68.0, "0 least": 50.0,
                                                        "0 most": 88.0, "0 jaw": 98.0, "0 corner": 36.0}
-    distances = "published: least distance of the lips in each closure, FAP units: M 124 B -7\nfirm contact: 61\n"
-    assert records.COMMANDS["side by side"].read(distances) == {
-        "published least": -7.0, "published most": 124.0, "published count": 2, "contact": 61.0}
+    openings = "paper: least opening in each p, b, m: M 124 B -7\nspeech_en: least opening in each p, b, m: M 20\n"
+    assert records.COMMANDS["side by side"].read(openings) == {
+        "paper least": -7.0, "paper most": 124.0, "paper count": 2, "speech_en least": 20.0, "speech_en most": 20.0,
+        "speech_en count": 1}
     assert records.COMMANDS["search"].read("| a |\n|---|\n| 0 | 8 | 27.60 | 0.91 |\n") == {
         "0 8 states": 27.6, "0 8 motion": 0.91}

@@ -1,12 +1,15 @@
-"""The command line: each sub-command end to end, errors as one line, and what the statuses mean."""
+"""The command line: each sub-command end to end, errors as one line whatever it is given, and what statuses mean."""
 
 from __future__ import annotations
 
 import errno
+import resource
+import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, NoReturn
+from typing import Callable, Iterator, List, NoReturn
 
 import numpy as np
 import pytest
@@ -16,10 +19,14 @@ from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
 from labial.program import Parser, number, os_error, run, whole
+from labial.rig.animation import FORMATS
 from labial.tables.model import save
-from models import random_model
+from models import random_model, write_motion
+from test_record import LAB as TALK
+from test_record import talking, turned
 
 LAB = "0.00 0.20 SIL\n0.20 0.31 P1\n0.31 0.42 p1\n0.50 0.71 P4\n0.71 1.00 SIL\n"
+FACE = '[output.jaw]\nfrom = "jaw"\nneutral = 1400\nfull = 1900\n'
 
 
 #: What a process runs that has no numpy and nothing else of what the extras bring.
@@ -220,3 +227,165 @@ def test_a_reader_that_goes_is_no_error() -> None:
         process.stdout.close()
         assert process.stderr.read() == b""
         assert process.wait(30) == 1
+
+
+# ---- Whatever it is given --------------------------------------------------------------------------------------------
+
+SYLLABLES = "".join(f"{n / 10} {n / 10 + 0.1} {label}\n" for n, label in enumerate(4 * ["SIL", "AA", "M", "IY", "SIL"]))
+
+
+@contextmanager
+def limited(seconds: float, memory: int) -> Iterator[None]:
+    """Ends what takes more processor time than `seconds`, or more bytes than `memory` on top of what is in use."""
+    def late(*_: object) -> None:
+        raise RuntimeError("it takes too long")
+
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (used + memory, before[1]))
+    previous = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, previous)
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+class Told:
+    """Runs the command and holds it to its promise: status 0, 1 or 2, and of an error one line."""
+
+    def __init__(self, capsys: pytest.CaptureFixture) -> None:
+        self._capsys = capsys
+
+    def __call__(self, *arguments: object) -> str:
+        """The line of the error, or nothing."""
+        self._capsys.readouterr()
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as error:
+            status = int(error.code or 0)
+        said = [line for line in self._capsys.readouterr().err.splitlines() if "labial: warning: " not in line]
+        assert status in (0, 1, 2) and len(said) == (1 if status else 0), (arguments, status, said)
+        return said[0] if said else ""
+
+
+@pytest.fixture
+def told(capsys: pytest.CaptureFixture) -> Iterator[Told]:
+    """Runs commands within limits of memory and time."""
+    if sys.platform != "linux":
+        pytest.skip("limits of memory and time are those of Linux")
+    with limited(60, 3_000_000_000):
+        yield Told(capsys)
+
+
+def corpus(folder: Path, lab: str = "0 2 SIL\n", count: int = 1,
+           frames: Callable[[int], List[float]] = lambda t: [0.0] * 13) -> Path:
+    """Writes episodes of two seconds."""
+    folder.mkdir()
+    for k in range(count):
+        write_motion(folder / f"u{k}.csv", np.arange(100) / 50, np.array([frames(t) for t in range(100)]))
+        (folder / f"u{k}.lab").write_text(lab)
+    return folder
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, with a file of each kind."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("a.lab", LAB), ("face.toml", FACE), ("talk.lab", TALK)):
+        (tmp_path / name).write_text(text)
+    write_motion(tmp_path / "f.csv", np.arange(9) / 50, np.tile(np.arange(13.0), (9, 1)))
+    save(random_model(1), tmp_path / "m.npz")
+    np.savez(tmp_path / "talk.npz", landmarks=turned(talking()[0]), fps=50.0)
+    return tmp_path
+
+
+@pytest.mark.parametrize(("frames", "lab", "count"), [
+    (lambda t: [0.0] * 13, SYLLABLES, 3),
+    pytest.param(lambda t: [t % 7.0] + [5.0] * 12, SYLLABLES, 3, marks=pytest.mark.slow),
+    (lambda t: [1e300] * 13, "0 2 SIL\n", 2), (lambda t: [t * 1e4] * 13, SYLLABLES, 3),
+    pytest.param(lambda t: [1e-300 * t] * 13, SYLLABLES, 3, marks=pytest.mark.slow),
+    (lambda t: [float(t)] * 13, "0 2 SIL\n", 2),
+    (lambda t: [float(t)] * 13, "0 .001 AA\n", 2), (lambda t: [float(t)] * 13, "0 86000 AA\n", 1),
+], ids=["zeros", "constants", "1e300", "far", "1e-300", "silence", "short", "long"])  # fmt: skip
+def test_absurd_corpora(tmp_path: Path, told: Told, frames: Callable, lab: str, count: int) -> None:
+    """Would catch a traceback in training, and a model that is trained but cannot be read or exported."""
+    pytest.importorskip("sklearn")
+    folder = corpus(tmp_path / "c", lab, count, frames)
+    model = tmp_path / "m.npz"
+    for method in ("paper", "labial"):
+        line = told("train", folder, "-o", model, "--method", method, "--jobs", 1, "--codebook", 4, "--components", 1)
+        if line:
+            assert line.startswith("labial: "), line
+            return
+        assert not told("export", model, "--name", "m", "-o", tmp_path / "out")
+
+
+@pytest.mark.parametrize("arguments", [
+    ["train", "c", "-o", "x.npz", "--seed", "-1"], ["train", "c", "-o", "x.npz", "--seed", "1_0"],
+    ["train", "c", "-o", "x.npz", "--seed", str(2**32)], ["train", "c", "-o", "x.npz", "--seed", "\u0661"],
+    ["train", "c", "-o", "x.npz", "--jobs", "9" * 30], ["train", "c", "-o", "x.npz", "--jobs", "0"],
+    ["train", "c", "-o", "x.npz", "--fps", "\u00b2"], ["train", "c", "-o", "x.npz", "--look-ahead", "-1"],
+    ["train", "c", "-o", "x.npz", "--look-ahead", "nan"], ["train", "c", "-o", "x.npz", "--talker-variance", "0"],
+    ["train", "c", "-o", "x.npz", "--talker-variance", "nan"], ["train", "c", "-o", "x.npz", "--adapt", "none.npz"],
+    ["train", "c", "-o", "x.npz", "--adapt", "m.npz"], ["evaluate", "c", "-o", "r", "--talker-variance", "-1"],
+    ["train", "", "-o", "x.npz"], ["train", "a.lab", "-o", "x.npz"],
+    ["laughter-corpus", "l", "--seed", "-1"], ["laughter-corpus", "a.lab"], ["laughter-corpus", ""],
+    ["evaluate", "c", "-o", "r", "--seed", "-1"], ["evaluate", "none", "-o", "r"],
+    ["evaluate", "c", "-o", "r", "--methods", ""], ["export", "m.npz", "--name", "", "-o", "o"],
+    ["export", "m.npz", "--name", "m", "-o", "o", "--amplitude", "nan"],
+    ["export", "m.npz", "--name", "m\n", "-o", "o"],
+    ["export", "m.npz", "--name", "m", "-o", "o", "--amplitude", "1e400"],
+    ["export", "m.npz", "--name", "m", "-o", "a.lab"], ["export", "m.npz", "--name", "m", "-o", "/dev/null"],
+    ["record", "talk.npz", "-o", "o", "--fps", "nan"], ["record", "talk.npz", "-o", "o", "--offset", "1e300"],
+    ["record", "talk.npz", "-o", "o", "--cutoff", "-1"], ["record", "talk.npz", "-o", "o", "--size", "1x1"],
+    ["record", "talk.npz", "-o", "a.lab"], ["record", "", "-o", "o"], ["record", "f.csv", "-o", "o"],
+    ["timings", ""], ["timings", "."], ["timings", "/dev/null"], ["timings", "/dev/zero"], ["timings", "none"],
+    ["timings", "a.lab", "-o", "."], ["timings", "a.lab", "-o", "none/x"], ["timings", "a\nb"],
+    ["timings", "\udcff.lab"],
+    ["synth", "m.npz", "", "-o", "x"], ["synth", ".", "a.lab"], ["synth", "m.npz", "a.lab", "-o", "."],
+    ["synth", "/dev/null", "a.lab"], ["synth", "/dev/zero", "a.lab"], ["synth", "none", "a.lab"],
+    ["page", "f.csv", "-o", "."], ["page", ".", "-o", "x.html"], ["page", "f.csv", "-o", "x", "--audio", "/dev/null"],
+    ["page", "f.csv", "-o", "x", "--audio", "."], ["plot", "f.csv", "-o", "x.png", "--channels", ","],
+    ["plot", "f.csv", "-o", "none/x.png"], ["plot", "f.csv", "-o", ""], ["rig", "/dev/null", "-o", "o"],
+    ["rig", ".", "-o", "o"], ["rig", "face.toml", "-o", "a.lab"], ["rig", "/dev/zero", "-o", "o", "--name", "x"],
+    ["bake", "f.csv", "-o", ".h"], ["bake", "", "-o", "x.h"], ["bake", ".", "-o", "x.h"], ["nothing"], ["bake"],
+    ["align", "a.lab"], ["align", "/dev/null"], ["align", "."], ["align", "", "--text", "a"],
+    ["align", "none.wav", "--text-file", "/dev/zero"],
+])  # fmt: skip
+def test_absurd_arguments(files: Path, told: Told, arguments: List[str]) -> None:
+    """Would catch an argument that no command foresees: whatever it is, it is refused in one line."""
+    line = told(*arguments)
+    assert line.startswith("labial"), line
+
+
+def test_names_that_are_not_utf8(files: Path) -> None:
+    """Would catch a name that cannot be printed, and a text that cannot be written because of it."""
+    name = "\udcff\udcfe"
+    for file in ("a.lab", "f.csv", "m.npz"):
+        (files / file).rename(files / (name + file[1:]))
+    (files / "a.lab").write_text(LAB)
+    script = "import sys\nfrom labial.__main__ import main\nsys.exit(any([main(a.split('|')) for a in sys.argv[1:]]))"
+    asked = [["timings", f"{name}.lab"], ["bake", f"{name}.csv", "-o", "o.h"], ["page", f"{name}.csv", "-o", "o.html"],
+             ["rig", "face.toml", "-o", name, "--no-figure"]]
+    asked += [["synth", f"{name}.npz", "a.lab", "-o", f"{name}.{kind}", "--to", kind]
+              for kind in FORMATS]
+    for arguments, status in ((asked, 0), ([["timings", f"{name}.none"]], 1)):
+        command = [sys.executable, "-c", script, *map("|".join, arguments)]
+        done = subprocess.run(command, check=False, capture_output=True)
+        said = [line for line in done.stderr.split(b"\n") if b"warning: " not in line]
+        assert done.returncode == status and b"".join(said).startswith(b"labial: " * status), done.stderr
+        assert len(said) == 1 + status, done.stderr
+    assert said[0].startswith(b"labial: \\udcff\\udcfe.none: ")
+
+
+def test_defects_are_told_apart(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    """Would catch a net that hides defects: they have a status of their own and name their place."""
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("by nothing")
+
+    monkeypatch.setattr("labial.corpus.formats.as_lab", broken)
+    assert main(["timings", "x"]) == 3
+    assert "ZeroDivisionError: by nothing (test_cli.py, line" in capsys.readouterr().err

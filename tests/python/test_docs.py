@@ -70,8 +70,8 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
     },
     "method.md": {
         'labial train "$LABIAL/export/corpora/grid_s1" --method paper -o paper.npz': "takes a minute",
-        'python -m labial.evaluate.side_by_side "$LABIAL/examples/demo/sentence.flite" published=paper.npz '
-        "Labial=speech_en -o sentence.svg": "needs the model above; test_see.py draws others",
+        'labial plot speech_en paper.npz --phones "$LABIAL/examples/demo/sentence.flite" '
+        "--channels opening,stretch,fap17,fap16 -o sentence.svg": "needs the model above; test_see.py draws others",
         'cmake -S "$LABIAL" -B letter -D LABIAL_METHOD=paper -D LABIAL_BUILD_TESTS=OFF':
             "test_published.py has such a library",
         "cmake --build letter --target labial-python": "likewise",

@@ -1,5 +1,5 @@
-"""examples/esp32-beside on stubs of ESP-IDF's interfaces: a simulated loudspeaker, the servo, and the lines that the
-patches put into xiaozhi-esp32 and its server."""
+"""examples/esp32-beside on stubs of ESP-IDF's interfaces: a simulated loudspeaker, the servo, and the lines that its
+patches, and those of examples/esp32-hear, put into other projects."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from typing import Any, AsyncIterator, Dict, List, Tuple
 import pytest
 
 import labial
+import test_esp32_hear
 from labial.rig.description import read
 from packages import SOURCE
 from runtime import needs_runtime
@@ -245,12 +246,40 @@ void Application::AbortSpeaking(AbortReason reason)
 """
 
 
-def test_patched_lines_compile(tmp_path: Path) -> None:
-    """Catches calls that mouth.h does not have, or with other arguments: every hunk is compiled as it is."""
-    source = tmp_path / "xiaozhi.cc"
-    source.write_text(fill(XIAOZHI, hunks(EXAMPLE / "xiaozhi.patch"), ".cc", ".h"), encoding="utf-8")
-    subprocess.run([CXX, "-std=c++17", *WARNINGS, *INCLUDES, *stub_options(tmp_path), "-c", str(source), "-o",
-                    os.devnull], check=True, timeout=60)
+CPP = (CXX, "-std=c++17", "-x", "c++")
+#: Of each patch with C or C++: what its lines stand in, what they call, and the compiler.
+PATCHED = {
+    "esp32-beside/xiaozhi": (XIAOZHI, "mouth_", CPP), "esp32-hear/xiaozhi": (test_esp32_hear.XIAOZHI, "lips_", CPP),
+    "esp32-hear/elatoai": (test_esp32_hear.ELATOAI, "lips_", CPP),
+    "esp32-hear/openai_demo": (test_esp32_hear.OPENAI_DEMO, "lips_", (CC, "-std=c11")),
+}
+
+
+@pytest.mark.parametrize("patch", PATCHED)
+def test_patched_lines_compile(patch: str, tmp_path: Path) -> None:
+    """Catches calls that the example does not have, or with other arguments: every hunk is compiled as it is."""
+    context, call, compiler = PATCHED[patch]
+    file = EXAMPLE.parent / f"{patch}.patch"
+    text = fill(context, hunks(file), ".c", ".cc", ".cpp", ".h")
+    assert call in text
+    source = tmp_path / "patched.c"
+    source.write_text(text, encoding="utf-8")
+    folders = (SOURCE / "include", SOURCE / "lib" / "models", file.parent)
+    subprocess.run([*compiler, *WARNINGS, *(f"-I{folder}" for folder in folders), *stub_options(tmp_path), "-c",
+                    str(source), "-o", os.devnull], check=True, timeout=60)
+
+
+@pytest.mark.parametrize("patch", [*PATCHED, "esp32-beside/xiaozhi-server"])
+def test_patches_name_their_commit_and_files(patch: str) -> None:
+    """Catches a patch of nobody knows which version, and a build that lacks the files it calls."""
+    file = EXAMPLE.parent / f"{patch}.patch"
+    text = file.read_text(encoding="utf-8")
+    found = re.match(r"Lips (?:beside the sound )?for https://github\.com/\S+, commit ([0-9a-f]{40})\.\n", text)
+    page = SOURCE / "docs" / ("beside.md" if file.parent == EXAMPLE else "esp32-hear.md")
+    said = page.read_text(encoding="utf-8")
+    assert found and found[1][:12] in said and file.name in said
+    for name in re.findall(r'"(\w+\.c)"', "\n".join(line for line in text.splitlines() if line[:1] == "+")):
+        assert name in ("webrtc.c", "main.c", "openai_signaling.c") or (file.parent / name).exists()
 
 
 # ---- The server ------------------------------------------------------------------------------------------------------
@@ -397,14 +426,3 @@ def test_a_voice_without_times_speaks_on(provider: Any, caplog: pytest.LogCaptur
     assert voice.sound(b"a") == b"a" and list(voice.sound(b"a").frames) == []
     voice.timed([{"type": "WordBoundary", "offset": -1, "duration": "x", "text": 3}])
     assert "no lips" in caplog.text and list(voice.sound(b"a").frames) == []
-
-
-@pytest.mark.parametrize("patch", ["xiaozhi", "xiaozhi-server"])
-def test_patches_name_their_commit_and_files(patch: str) -> None:
-    """Catches a patch of nobody knows which version, and a build that lacks the files it calls."""
-    text = (EXAMPLE / f"{patch}.patch").read_text(encoding="utf-8")
-    commit = re.findall(r"commit ([0-9a-f]{40})\.\n", text)[0]
-    page = (SOURCE / "docs" / "beside.md").read_text(encoding="utf-8")
-    assert commit[:12] in page and f"{patch}.patch" in page
-    for name in re.findall(r'^\+ *"(\w+\.c)"', text, re.MULTILINE):
-        assert (EXAMPLE / name).exists()

@@ -1,5 +1,5 @@
 """examples/esp32-hear on the host: lips against a simulated loudspeaker, the renderer and the servo on stubs of their
-interfaces, and the lines that its patches put into other projects."""
+interfaces, and what the lines that its patches put into other projects stand in, for test_esp32_beside.py."""
 
 from __future__ import annotations
 
@@ -605,30 +605,3 @@ int build_player_system(void)
 return 0;
 }
 """
-
-
-@pytest.mark.parametrize(("patch", "context", "compiler"), [
-    ("xiaozhi", XIAOZHI, [CXX, "-std=c++17", "-x", "c++"]),
-    ("elatoai", ELATOAI, [CXX, "-std=c++17", "-x", "c++"]),
-    ("openai_demo", OPENAI_DEMO, [CC, "-std=c11"]),
-], ids=["xiaozhi", "elatoai", "openai_demo"])
-def test_patched_lines_compile(patch: str, context: str, compiler: List[str], tmp_path: Path) -> None:
-    """Catches calls that lips.h does not have, or with other arguments: every hunk in C or C++ is compiled as it is."""
-    text = fill(context, hunks(EXAMPLE / f"{patch}.patch"), ".c", ".cc", ".cpp", ".h")
-    assert "lips_" in text
-    source = tmp_path / "patched.c"
-    source.write_text(text, encoding="utf-8")
-    subprocess.run([*compiler, *WARNINGS, *INCLUDES, *stub_options(tmp_path), "-c", str(source), "-o",
-                    str(tmp_path / "a.o")], check=True, timeout=60)
-
-
-@pytest.mark.parametrize("patch", ["xiaozhi", "elatoai", "openai_demo"])
-def test_patches_name_their_commit_and_files(patch: str) -> None:
-    """Catches a patch of nobody knows which version, and a build that lacks the files it calls."""
-    text = (EXAMPLE / f"{patch}.patch").read_text(encoding="utf-8")
-    assert re.match(r"Lips for https://github\.com/\S+, commit [0-9a-f]{40}\.\n", text)
-    page = (SOURCE / "docs" / "esp32-hear.md").read_text(encoding="utf-8")
-    commit = re.findall(r"[0-9a-f]{40}", text)[0]
-    assert commit[:12] in page and f"{patch}.patch" in page
-    for name in re.findall(r'"(\w+\.c)"', "\n".join(line for line in text.splitlines() if line[:1] == "+")):
-        assert name in ("webrtc.c", "main.c", "openai_signaling.c") or (EXAMPLE / name).exists()

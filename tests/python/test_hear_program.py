@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import queue
 import random
 import struct
 import subprocess
-import threading
 from pathlib import Path
-from typing import List, Tuple
+from typing import List
 
 import numpy as np
 import pytest
@@ -19,17 +17,15 @@ import labial
 from runtime import needs_runtime
 from test_animation import read_fap
 from test_hearing import voice
-from test_say import HEADER, SAY
+from test_say import HEADER, command, run, say
 
-HEAR = os.environ.get("LABIAL_HEAR", "")
-pytestmark = [needs_runtime, pytest.mark.skipif(not HEAR, reason="LABIAL_HEAR does not name the built labial-hear")]
-
+pytestmark = needs_runtime
 PCM, FLOAT, EXTENSIBLE = 1, 3, 0xFFFE
 
 
 def hear(*arguments: str, data: bytes = b"") -> subprocess.CompletedProcess:
     """Runs labial-hear; its output as bytes."""
-    return subprocess.run([HEAR, *arguments], input=data, capture_output=True, timeout=60, check=False)
+    return run("labial-hear", *arguments, data=data)
 
 
 def chunk(name: bytes, data: bytes, size: int = -1) -> bytes:
@@ -128,7 +124,7 @@ def test_blocks_of_any_length(seed: int) -> None:
     """Catches frames that depend on how the bytes arrive in a pipe."""
     draw, data = random.Random(seed), pcm(SOUND)
     pipe = subprocess.PIPE
-    child = subprocess.Popen([HEAR, "-"], stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0)
+    child = subprocess.Popen(command("labial-hear", "-"), stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0)
     assert child.stdin
     while data:
         size = draw.choice((1, 2, 3, 319, 640, 4097))
@@ -136,42 +132,6 @@ def test_blocks_of_any_length(seed: int) -> None:
         data = data[size:]
     out, errors = child.communicate(timeout=60)
     assert motion(subprocess.CompletedProcess([], child.returncode, out, errors)) == wanted(SOUND)
-
-
-@pytest.mark.parametrize("options", [[], ["--classes"]])
-def test_frames_leave_while_sound_arrives(options: List[str]) -> None:
-    """Catches frames that are kept back: after 400 ms all frames are out that the library knows by then, and in the end
-    all."""
-    with labial.Hearing(model="hear_small") as hearing:
-        known = len(hearing.push(SOUND[:6400]))
-    assert known > 10
-    lines: queue.Queue[bytes] = queue.Queue()
-    child = subprocess.Popen([HEAR, "-", *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    assert child.stdin and child.stdout
-
-    def read() -> None:
-        for line in child.stdout:  # type: ignore[union-attr]
-            lines.put(line)
-
-    reader = threading.Thread(target=read, daemon=True)
-    reader.start()
-    try:
-        child.stdin.write(pcm(SOUND[:6400]))
-        child.stdin.flush()
-        early = [lines.get(timeout=60) for _ in range(1 if options else 1 + known)]
-        assert child.poll() is None
-        child.stdin.write(pcm(SOUND[6400:]))
-        child.stdin.close()
-        assert child.wait(timeout=60) == 0
-        reader.join(timeout=60)
-    finally:
-        child.kill()  # so that a failure above ends here instead of waiting for a program that waits
-        child.wait()
-        reader.join(timeout=60)
-        child.stdout.close()
-    while not lines.empty():
-        early.append(lines.get())
-    assert b"".join(early) == hear("-", *options, data=pcm(SOUND)).stdout
 
 
 def test_every_format_has_the_frames() -> None:
@@ -200,10 +160,8 @@ def test_classes_are_timings(tmp_path: Path) -> None:
         shown = hearing.shown()
     assert done.stdout.decode() == "".join(
         f"{item.frame / 50:.3f} {(item.frame + item.frames) / 50:.3f} {item.name}\n" for item in shown)
-    if SAY:
-        said = subprocess.run([SAY, "--from=lab", "--exact"], input=done.stdout, capture_output=True, timeout=60,
-                              check=False)
-        assert said.returncode == 0 and said.stderr == b"" and len(said.stdout.splitlines()) == 36
+    said = say(done.stdout, "--from=lab", "--exact")
+    assert said.returncode == 0 and said.stderr == b"" and len(said.stdout.splitlines()) == 36
 
 
 # ---- WAV files -------------------------------------------------------------------------------------------------------
@@ -367,39 +325,3 @@ def test_files_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     done = hear("-", "--rate", "11025")
     assert done.returncode == 1
     assert done.stderr.startswith(b"labial-hear: standard input: 11025 samples per second, channels: 1: ")
-
-
-# ---- Usage -----------------------------------------------------------------------------------------------------------
-
-USAGE: Tuple[List[str], ...] = (
-    [], ["--to"], ["-", "--to", "wav"], ["-", "--model", "x"], ["-", "--model=hear_small"], ["-", "--nonsense"],
-    ["a.wav", "b.wav"], ["a.wav", "--rate", "16000"], ["a.wav", "--channels=1"], ["-", "--classes", "--to", "csv"],
-    *(["-", "--rate", rate] for rate in ("", "0", "-1", "16k", "16000.0", "4294983296")),
-    *(["-", "--channels", channels] for channels in ("", "0", "3", "mono")),
-)
-
-
-@pytest.mark.parametrize("arguments", USAGE)
-def test_usage_errors(arguments: List[str]) -> None:
-    """Options that mean nothing end with status 2 before anything is read or written."""
-    done = hear(*arguments, data=pcm(SOUND))
-    assert done.returncode == 2 and done.stdout == b""
-    assert done.stderr.startswith(b"labial-hear: ") and done.stderr.count(b"\n") == 1
-
-
-def test_help_and_version() -> None:
-    """Both are answered on standard output with status 0."""
-    done = hear("--help")
-    assert done.returncode == 0 and b"usage: labial-hear" in done.stdout and b"small (default)" in done.stdout
-    done = hear("--version")
-    assert done.returncode == 0 and done.stdout.startswith(b"labial-hear ")
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
-@pytest.mark.parametrize("options", [[], ["--classes"], ["--to", "fap"]])
-def test_a_full_disk_is_an_error(options: List[str]) -> None:
-    """Motion that could not be written is not success."""
-    with open("/dev/full", "wb") as full:
-        done = subprocess.run([HEAR, "-", *options], input=pcm(SOUND), stdout=full, stderr=subprocess.PIPE, timeout=60,
-                              check=False)
-    assert done.returncode == 1 and b"cannot write" in done.stderr

@@ -34,6 +34,7 @@ from labial.tables.fixed import (
     weight_value,
     z_cost,
 )
+from labial.tables.layout import check_fits
 from labial.tables.model import Model
 from labial.tables.quantise import FORMAT, LIMITS, ExportedModel, quantise
 from models import random_model, streams
@@ -319,3 +320,57 @@ def test_refuses_what_the_library_cannot_hold(message: str, change: dict) -> Non
         change = {"state_mean": far}
     with pytest.raises(ModelError, match=message):
         quantise(dataclasses.replace(model, **change), "model")
+
+
+# ---- What a model may hold -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("value", [1e300, -1e300, np.nan, np.inf, 1e6])
+def test_values_beyond_the_tables_are_named(value: float) -> None:
+    """Would catch -9223372036854775808 in a uint16: every value of every array is refused, or the tables hold it."""
+    model = random_model(2)
+    for item in dataclasses.fields(model):
+        array = getattr(model, item.name)
+        if not isinstance(array, np.ndarray) or array.dtype.kind != "f" or not array.size:
+            continue
+        wrong = array.copy()
+        wrong[(-1,) * wrong.ndim] = value
+        at = ", ".join(str(size - 1) for size in wrong.shape)
+        try:
+            exported = quantise(dataclasses.replace(model, **{item.name: wrong}), "m")
+        except ModelError as error:
+            named = f"{item.name}[{at}] is {value:g}" if not abs(value) <= 1e6 else "["
+            assert named in str(error), error
+        else:
+            assert abs(value) <= 1e6, item.name
+            emit.source(exported)
+
+
+def test_tables_hold_what_is_written() -> None:
+    """Would catch a table that the exporter packs without its C type's range."""
+    exported = quantise(random_model(2), "m")
+    for name in ("cost", "shapes", "slopes", "kernels", "pairs", "emission_gain", "initial", "state_mean",
+                 "state_motion", "motion_scale", "transitions", "state_weight", "centre", "firm", "duration_mean",
+                 "floors", "contexts", "shape_scale"):  # fmt: skip
+        table = getattr(exported, name).astype(np.int64)
+        for value in (-(2**63), 70000, -40000):
+            wrong = table.copy()
+            wrong.flat[-1] = value
+            with pytest.raises(ModelError, match="cannot be written: .*not a whole number within"):
+                emit.source(dataclasses.replace(exported, **{name: wrong}))
+    check_fits("t", "b", np.array([-128, 127]))
+    check_fits("t", "H", np.array([0, 65535]))
+    for code, value in (("b", 128), ("b", -129), ("B", 256), ("B", -1), ("h", 32768), ("H", 65536), ("H", 0.5)):
+        with pytest.raises(ModelError, match="row 1"):
+            check_fits("t", code, np.array([0, value]))
+
+
+@pytest.mark.parametrize("text", ["*/ int x; /*", "/**/", "a\nb\0c\r*\t/", "\u202e*/", "*" * 200 + "/", "/" * 200 + "*",
+                                  "/*/*/*/", "??/"])  # fmt: skip
+def test_attributions_stay_within_their_comment(text: str) -> None:
+    """Would catch a comment that ends, or begins again, within what a model says of itself."""
+    exported = dataclasses.replace(quantise(random_model(2), "m"), attribution=text)
+    for written in (emit.header(exported), emit.source(exported), emit.names_source(exported)):
+        inside = written[2 : written.index("*/")]
+        assert "/*" not in inside and written.startswith("/*\n") and written[written.index("*/") :].startswith("*/\n#")
+        assert all(c.isprintable() or c == "\n" for c in written)

@@ -1,4 +1,5 @@
-"""labial-say from outside: text in, frames out. The environment variable LABIAL_SAY holds the program's path.
+"""labial-say from outside: text in, frames out; and what all programs have in common. Environment variables such as
+LABIAL_SAY hold their paths.
 
 What lines of timings mean and which are refused is the library's; test_timings.py and tests/c/test_timings.c have it.
 """
@@ -12,28 +13,41 @@ import subprocess
 import threading
 from itertools import accumulate
 from pathlib import Path
-from typing import List
+from typing import Callable, Dict, List, Tuple
 
+import numpy as np
 import pytest
 
+import labial
 from labial.__main__ import main
 from labial.see.motion import read_bands
 from models import lab
 from packages import SOURCE
+from runtime import needs_runtime
+from test_hearing import voice
 from test_timings import FILES, PHRASE, SEEDS, SENTENCE, damaged
-
-SAY = os.environ.get("LABIAL_SAY", "")
-pytestmark = pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")
 
 HEADER = "time,fap3,fap16,fap17,fap51,fap52,fap53,fap54,fap55,fap56,fap57,fap58,fap59,fap60"
 FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
 TEXT = lab(PHRASE)
 
 
+def command(name: str, *arguments: str) -> List[str]:
+    """A program with arguments; skips where it is not built."""
+    variable = name.upper().replace("-", "_")
+    if not os.environ.get(variable):
+        pytest.skip(f"{variable} does not name the built {name}")
+    return [os.environ[variable], *arguments]
+
+
+def run(name: str, *arguments: str, data: bytes = b"") -> subprocess.CompletedProcess:
+    """Runs a program; its output as bytes."""
+    return subprocess.run(command(name, *arguments), input=data, capture_output=True, timeout=60, check=False)
+
+
 def say(text: str | bytes, *options: str) -> subprocess.CompletedProcess:
-    """Runs labial-say on `text`; its output as bytes."""
-    data = text if isinstance(text, bytes) else text.encode()
-    return subprocess.run([SAY, *options], input=data, capture_output=True, timeout=60, check=False)
+    """Runs labial-say on `text`."""
+    return run("labial-say", *options, data=text if isinstance(text, bytes) else text.encode())
 
 
 def motion(text: str | bytes, *options: str) -> List[List[str]]:
@@ -103,8 +117,8 @@ def test_totals_are_exact() -> None:
 @pytest.mark.parametrize(("seconds", "told"), [(3590, False), (3610, True)])
 def test_motion_of_hours_is_told(seconds: int, told: bool) -> None:
     """Would catch a program that works for minutes on a small file and does not say why."""
-    done = subprocess.run([SAY], input=f"0 1800 SIL\n1800 {seconds} SIL\n".encode(), stdout=subprocess.DEVNULL,
-                          stderr=subprocess.PIPE, timeout=60, check=True)
+    done = say(f"0 1800 SIL\n1800 {seconds} SIL\n")
+    assert done.returncode == 0
     assert (b"the motion lasts for more than an hour" in done.stderr) == told
 
 
@@ -115,41 +129,6 @@ def test_times_of_frames() -> None:
     for i, row in enumerate(rows):
         assert row[0] == f"{i / rate:.3f}"
         assert [str(int(value)) for value in row[1:]] == row[1:] and len(row) == 14
-
-
-def test_frames_leave_while_input_arrives() -> None:
-    """Frames come out before the input has ended, within one long line, and in the end all of them."""
-    phrase = PHRASE * 6
-    ends = accumulate(length for _, length in phrase)
-    text = " ".join(f"{label}:{end / 1000:.3f}" for (label, _), end in zip(phrase, ends)) + "\n"
-    half = text[: len(text) // 2].encode()
-    lines: queue.Queue[bytes] = queue.Queue()
-    child = subprocess.Popen([SAY], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-    assert child.stdin and child.stdout
-
-    def read() -> None:
-        for line in child.stdout:  # type: ignore[union-attr]
-            lines.put(line)
-
-    reader = threading.Thread(target=read, daemon=True)
-    reader.start()
-    try:
-        child.stdin.write(half)
-        child.stdin.flush()
-        early = [lines.get(timeout=120) for _ in range(21)]
-        assert child.poll() is None
-        child.stdin.write(text[len(half) :].encode())
-        child.stdin.close()
-        reader.join(timeout=120)
-        assert child.wait(timeout=120) == 0
-    finally:
-        child.kill()  # so that a failure above ends here instead of waiting for a program that waits
-        child.wait()
-        reader.join(timeout=120)
-        child.stdout.close()
-    while not lines.empty():
-        early.append(lines.get())
-    assert b"".join(early) == say(text).stdout
 
 
 @pytest.mark.parametrize(("text", "line", "told"), [
@@ -240,34 +219,6 @@ def test_laughter() -> None:
     assert done.returncode == 0 and b"laughter_synthetic has no phoneme 'ey', which moves as e" in done.stderr
 
 
-@pytest.mark.parametrize(
-    "options",
-    [["--from"], ["--from", "wav"], ["--to=x"], ["--model", "x"], ["--nonsense"], ["x.lab"], ["--to", "csv", "x"],
-     *(["--articulation", percent] for percent in ("", "201", "-1", "50.5", "1e2", "50 ", "4294967396"))],
-)
-def test_usage_errors(options: List[str]) -> None:
-    """Options that mean nothing end with status 2 before anything is read or written."""
-    done = say("pau:0.2\n", *options)
-    assert done.returncode == 2 and done.stdout == b"" and done.stderr.startswith(b"labial-say: ")
-
-
-def test_help_and_version() -> None:
-    """Both are answered on standard output with status 0."""
-    done = say("", "--help")
-    assert done.returncode == 0 and b"usage: labial-say" in done.stdout and b"--from" in done.stdout
-    done = say("", "--version")
-    assert done.returncode == 0 and done.stdout.startswith(b"labial-say ")
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
-def test_a_full_disk_is_an_error() -> None:
-    """Motion that could not be written is not success."""
-    data = TEXT.encode()
-    with open("/dev/full", "wb") as full:
-        done = subprocess.run([SAY], input=data, stdout=full, stderr=subprocess.PIPE, timeout=60, check=False)
-    assert done.returncode == 1 and b"cannot write" in done.stderr
-
-
 @pytest.mark.parametrize("data", [b"\xff\xfea", b"\xfe\xff\xd8\x00\x00a", b"\xff\xfe\x00\xdc", b"\xff\xfe\x3d\xd8",
                                   b"\xff\xfe\x00\x00", b"\xef\xbb"])  # fmt: skip
 def test_broken_encodings_are_errors(data: bytes) -> None:
@@ -350,3 +301,103 @@ def test_the_exporter_reads_labels_as_labial_say_does(tmp_path: Path, capsys: py
     assert moved["auto"] == moved["arpabet"] != moved["ipa"] == moved["xsampa"]
     assert [band.label for band in read_bands(phones, "ipa")] == ["SIL", "UW", "SIL"]
     assert [band.label for band in read_bands(phones)] == ["SIL", "Y", "SIL"]
+
+
+# ---- What it has in common with labial-hear, labial-say-flite and labial-say-espeak ----------------------------------
+
+SOUND = voice(0.7).astype("<i2").tobytes()
+PHRASES = " ".join(f"{label}:{end / 1000:.3f}" for (label, _), end in
+                   zip(PHRASE * 6, accumulate(length for _, length in PHRASE * 6))).encode() + b"\n"
+
+
+def known(sound: bytes) -> int:
+    """How many lines labial-hear can write when it has heard so much: the head, and frames."""
+    with labial.Hearing(model="hear_small") as hearing:
+        return 1 + len(hearing.push(np.frombuffer(sound, "<i2")))
+
+
+@pytest.mark.parametrize(("name", "options", "data", "size", "lines"), [
+    ("labial-say", [], PHRASES, len(PHRASES) // 2, lambda _: 21),
+    pytest.param("labial-hear", ["-"], SOUND, 12800, known, marks=needs_runtime),
+    ("labial-hear", ["-", "--classes"], SOUND, 12800, lambda _: 1),
+], ids=["say", "hear", "classes"])  # fmt: skip
+def test_frames_leave_while_input_arrives(name: str, options: List[str], data: bytes, size: int,
+                                          lines: Callable[[bytes], int]) -> None:
+    """Catches lines that are kept back, also of a long line of timings that goes on; in the end there are all."""
+    count = lines(data[:size])
+    assert count > 11 or "--classes" in options
+    found: queue.Queue[bytes] = queue.Queue()
+    child = subprocess.Popen(command(name, *options), stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert child.stdin and child.stdout
+
+    def read() -> None:
+        for line in child.stdout:  # type: ignore[union-attr]
+            found.put(line)
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    try:
+        child.stdin.write(data[:size])
+        child.stdin.flush()
+        early = [found.get(timeout=120) for _ in range(count)]
+        assert child.poll() is None
+        child.stdin.write(data[size:])
+        child.stdin.close()
+        reader.join(timeout=120)
+        assert child.wait(timeout=120) == 0
+    finally:
+        child.kill()  # so that a failure above ends here instead of waiting for a program that waits
+        child.wait()
+        reader.join(timeout=120)
+        child.stdout.close()
+    while not found.empty():
+        early.append(found.get())
+    assert b"".join(early) == run(name, *options, data=data).stdout
+
+
+SPEAK = [[], ["a.wav"], ["--to", "x", "a", "b"], ["--what"], ["a", "b", "c"]]
+#: Arguments that mean nothing, and what standard input holds.
+USAGE: Dict[str, Tuple[bytes, List[List[str]]]] = {
+    "labial-say": (b"pau:0.2\n", [
+        ["--from"], ["--from", "wav"], ["--to=x"], ["--model", "x"], ["--nonsense"], ["x.lab"], ["--to", "csv", "x"],
+        *(["--articulation", percent] for percent in ("", "201", "-1", "50.5", "1e2", "50 ", "4294967396"))]),
+    "labial-hear": (SOUND, [
+        [], ["--to"], ["-", "--to", "wav"], ["-", "--model", "x"], ["-", "--model=hear_small"], ["-", "--nonsense"],
+        ["a.wav", "b.wav"], ["a.wav", "--rate", "16000"], ["a.wav", "--channels=1"], ["-", "--classes", "--to", "csv"],
+        *(["-", "--rate", rate] for rate in ("", "0", "-1", "16k", "16000.0", "4294983296")),
+        *(["-", "--channels", channels] for channels in ("", "0", "3", "mono"))]),
+    "labial-say-flite": (b"", SPEAK),
+    "labial-say-espeak": (b"", SPEAK),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "arguments"), [(name, row) for name, (_, rows) in USAGE.items() for row in rows])
+def test_usage_errors(name: str, arguments: List[str]) -> None:
+    """Arguments that mean nothing end with status 2 before anything is read or written."""
+    done = run(name, *arguments, data=USAGE[name][0])
+    assert done.returncode == 2 and done.stdout == b""
+    assert done.stderr.startswith(f"{name}: ".encode()) and done.stderr.count(b"\n") == 1
+
+
+@pytest.mark.parametrize(("name", "says"), [("labial-say", b"--from"), ("labial-hear", b"small (default)"),
+                                            ("labial-say-flite", b""), ("labial-say-espeak", b"")])
+def test_help_and_version(name: str, says: bytes) -> None:
+    """Both are answered on standard output with status 0."""
+    done = run(name, "--help")
+    assert done.returncode == 0 and f"usage: {name}".encode() in done.stdout and says in done.stdout
+    if says:
+        done = run(name, "--version")
+        assert done.returncode == 0 and done.stdout.startswith(f"{name} ".encode())
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
+@pytest.mark.parametrize(("name", "options", "data"), [
+    ("labial-say", [], TEXT.encode()), ("labial-hear", ["-"], SOUND), ("labial-hear", ["-", "--classes"], SOUND),
+    ("labial-hear", ["-", "--to", "fap"], SOUND),
+], ids=["say", "hear", "classes", "fap"])  # fmt: skip
+def test_a_full_disk_is_an_error(name: str, options: List[str], data: bytes) -> None:
+    """Motion that could not be written is not success."""
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(command(name, *options), input=data, stdout=full, stderr=subprocess.PIPE, timeout=60,
+                              check=False)
+    assert done.returncode == 1 and b"cannot write" in done.stderr

@@ -18,8 +18,9 @@ import numpy as np
 import pytest
 
 from packages import SOURCE
+from test_say import run
 
-PROGRAMS = {name: os.environ.get(f"LABIAL_SAY_{name.upper()}", "") for name in ("flite", "espeak")}
+PROGRAMS = ("flite", "espeak")
 #: Frames after the sound, in which the face comes to rest.
 REST = 12
 TEXT = "Mama may be home. Papa may be happy. Bob made a map, maybe. Pam bombed a baby mob."
@@ -27,10 +28,7 @@ TEXT = "Mama may be home. Papa may be happy. Bob made a map, maybe. Pam bombed a
 
 def speak(program: str, *arguments: str, text: str = "") -> subprocess.CompletedProcess:
     """Runs a program; skips where it is not built."""
-    if not PROGRAMS[program]:
-        pytest.skip(f"LABIAL_SAY_{program.upper()} does not name the built labial-say-{program}")
-    return subprocess.run([PROGRAMS[program], *arguments], input=text.encode(), capture_output=True, timeout=60,
-                          check=False)
+    return run(f"labial-say-{program}", *arguments, data=text.encode())
 
 
 def sound_and_motion(program: str, folder: Path, text: str) -> Tuple[np.ndarray, int, np.ndarray, List[str]]:
@@ -91,13 +89,10 @@ def test_other_formats(program: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_errors(program: str, tmp_path: Path) -> None:
     """Catches a failure that passes for success, or that says nothing."""
-    for status, arguments in ((2, []), (2, [str(tmp_path / "a.wav")]), (2, ["--to", "x", "a", "b"]), (2, ["--what"]),
-                              (2, ["a", "b", "c"]), (1, [str(tmp_path / "none" / "a.wav"), "Mama."]),
-                              (1, [str(tmp_path / "a.wav"), " \n"])):
+    for arguments in ([str(tmp_path / "none" / "a.wav"), "Mama."], [str(tmp_path / "a.wav"), " \n"]):
         done = speak(program, *arguments)
-        assert done.returncode == status and done.stdout == b"", arguments
+        assert done.returncode == 1 and done.stdout == b"", arguments
         assert done.stderr.startswith(f"labial-say-{program}: ".encode()) and done.stderr.count(b"\n") == 1
-    assert speak(program, "--help").returncode == 0
 
 
 #: A sentence each; those of the Slavic and Asian languages hold signs and tones that espeak-ng reports as phonemes.

@@ -4,6 +4,5 @@
     timelines and motion,      fit on the training       one number     Markdown, CSV,
     splits: who is judged      part, predict the test    per method     PNG
 
-Laughter is judged by its pulses, speech by its closures. ``side_by_side.py`` draws the motion of
-several models for one stream of phonemes, without human motion.
+Laughter is judged by its pulses, speech by its closures.
 """
