@@ -25,8 +25,11 @@ from measure.sources import number, rows, tables
 FILE = Path("bench") / "records.json"
 RESULTS = Path("export") / "RESULTS.md"
 
-#: What the motion of the bundled models depends on, below the folder of the sources.
-MOTION = ("export/models/speech_en.npz", "export/models/laughter_synthetic.npz", "tests/conformance/frames.txt")
+#: What the motion of the bundled models depends on, below the folder of the sources. No record has to do with streams
+#: that pass from model to model.
+FRAMES = "tests/conformance/frames.txt"
+MOTION = ("export/models/speech_en.npz", "export/models/laughter_synthetic.npz", FRAMES)
+PASSING = ("switch", "quick_switches", "second_frame", "turns", "switch_in_long", "articulated_turns")
 
 #: Voices whose closures are counted, and one to which nothing was fitted.
 VOICES = ("flite:kal", "flite:slt", "flite:rms", "espeak:en-us", "espeak:en-gb-x-rp", "espeak:en-gb-scotland",
@@ -147,8 +150,15 @@ def digest(root: Path, record: str = "") -> str:
     """Of everything that the motion, or the figures of a record, depend on."""
     found = hashlib.sha256()
     for name in COMMANDS[record].of if record in COMMANDS else MOTION:
-        found.update((root / name).read_bytes())
+        content = (root / name).read_bytes()
+        found.update(_without(PASSING, content) if name == FRAMES else content)
     return found.hexdigest()[:16]
+
+
+def _without(streams: Sequence[str], frames: bytes) -> bytes:
+    """The frames of the other streams. A stream begins with its name, and its lines with numbers."""
+    names = "|".join(streams).encode()
+    return re.sub(rb"^(?:%s)\n(?:[-\d].*\n|and .*\n)*" % names, b"", frames, flags=re.MULTILINE)
 
 
 def section_commands(text: str) -> Dict[str, List[str]]:
