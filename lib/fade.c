@@ -57,11 +57,17 @@ void labial_fade_stand(labial_fade_t *fade)
     fade->step = 0;
 }
 
-int labial_fade_rests(const labial_fade_t *fade)
+/* A channel in whole FAP units. */
+static int rounded(const labial_fade_t *fade, unsigned channel)
+{
+    return (fade->pose[channel] + 8) >> 4;
+}
+
+int labial_fade_within(const labial_fade_t *fade, int most)
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        if (fade->pose[k] > LABIAL_AT_REST || fade->pose[k] < -LABIAL_AT_REST)
+        if (rounded(fade, k) > most || rounded(fade, k) < -most)
             return 0;
     return 1;
 }
@@ -70,5 +76,5 @@ void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        faps[k] = (int16_t)((fade->pose[k] + 8) >> 4);
+        faps[k] = (int16_t)rounded(fade, k);
 }

@@ -15,9 +15,6 @@
 /* Steps of a way to motion that begins anew: the motion itself is reached with the last one. */
 #define LABIAL_FADE_STEPS 9u
 
-/* A pose is at rest when no channel is farther from the neutral face than this: 8 FAP units, Q4. */
-#define LABIAL_AT_REST 128
-
 /* Frames of a cancel over `milliseconds` (labial/result.h). */
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
 
@@ -38,8 +35,9 @@ static inline uint32_t labial_fade_left(const labial_fade_t *fade, uint32_t whol
     return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
 }
 
-/* Whether the pose that was delivered last is at rest. */
-int labial_fade_rests(const labial_fade_t *fade);
+/* Whether no channel of the pose that was delivered last is more than `most` FAP units from the neutral face; 0: whether
+ * it is that face. */
+int labial_fade_within(const labial_fade_t *fade, int most);
 
 /* That pose in whole FAP units. */
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS]);

@@ -23,6 +23,9 @@
 #include "units.h"
 #include "unlocked.h"
 
+/* FAP units from the neutral face, in no channel of which lips are far from meeting. */
+#define NEAR_REST 8
+
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
     return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
@@ -136,12 +139,12 @@ static void call_back(labial_t *stream, unsigned counts)
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
-/* Steps of the way to motion that begins anew with the frame that is due. Where the face is not at rest and lips meet
+/* Steps of the way to motion that begins anew with the frame that is due. Where the face is not near rest and lips meet
  * before the way's usual end, it ends with the second frame of their contact. */
 static unsigned steps_of_way(const labial_t *stream)
 {
     unsigned step, age = LABIAL_DELAY(stream->channels.stride);
-    if (labial_fade_rests(&stream->fade))
+    if (labial_fade_within(&stream->fade, NEAR_REST))
         return LABIAL_FADE_STEPS;
     for (step = 1; step < LABIAL_FADE_STEPS; step++) {
         if (is_among(stream->touches, age))
@@ -171,7 +174,7 @@ static int deliver(labial_t *stream)
 static int rest(labial_t *stream)
 {
     if (!stream->resting) {
-        if (stream->exact || labial_fade_rests(&stream->fade))
+        if (stream->exact || labial_fade_within(&stream->fade, 0))
             return 0;
         labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, 0);
         stream->resting = 1;

@@ -104,9 +104,8 @@ int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count);
 
 /*
  * No more sound will come: delivers all frames that are still to come, as if the last sample stayed. A frame that the
- * sound fills in part is the last one; after it the face comes to rest in LABIAL_EASE_FRAMES more, unless no channel is
- * farther than 8 FAP units from it already. The callback receives all of them during the call; a program shows one every
- * 20 ms.
+ * sound fills in part is the last one; after it the face comes to rest in LABIAL_EASE_FRAMES more, unless it is the
+ * neutral one already. The callback receives all of them during the call; a program shows one every 20 ms.
  *
  * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */

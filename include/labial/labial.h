@@ -153,7 +153,7 @@ unsigned labial_room(const labial_t *stream);
 
 /*
  * No more phonemes will come. After the frames of the last one the face comes to rest in LABIAL_EASE_FRAMES more, unless
- * no channel is farther than 8 FAP units from it already; then the stream is done.
+ * it is the neutral one already; then the stream is done.
  *
  * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */

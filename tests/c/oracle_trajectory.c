@@ -3,7 +3,6 @@
  */
 #include "oracle.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -206,14 +205,14 @@ static double faded(double fresh, double held, double pace, unsigned j, unsigned
 }
 
 /* Steps of the fade from `held` to the solution that begins with frame `t`: until the second frame in contact, as far as
- * contacts are known when the frame is delivered, unless the face is at rest or this is no sooner. */
+ * contacts are known when the frame is delivered, unless the face is near rest or this is no sooner. */
 static unsigned fade_length(const stream_t *stream, size_t t, const double *held)
 {
     const size_t known = LABIAL_DELAY(stream->models[0]->search_stride);
-    int is_at_rest = 1;
+    int is_near_rest = 1;
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        is_at_rest = is_at_rest && fabs(held[c]) <= 128.0;
-    for (size_t k = 0; !is_at_rest && k < FADE && k <= known && t + k < stream->count; k++) {
+        is_near_rest = is_near_rest && held[c] >= -136.0 && held[c] < 136.0; /* 8 FAP units, rounded */
+    for (size_t k = 0; !is_near_rest && k < FADE && k <= known && t + k < stream->count; k++) {
         if (k > 0 && stream->frames[t + k].begins)
             break;
         if (stream->contacts[t + k])

@@ -18,7 +18,6 @@
 #define MOST 6000
 #define FADE 8
 #define FRAMES LABIAL_EASE_FRAMES
-#define NEAR 8 /* FAP units within which the face is at rest */
 
 typedef struct {
     labial_t stream;
@@ -148,7 +147,7 @@ TEST(a_stream_begins_and_ends_at_rest)
         assert_true(fixture_is_exact(twin.count, fixture_duration(input, count), FIXTURE_RATE));
         assert_memory_equal(face.faps, twin.faps, twin.count * sizeof face.faps[0]);
         assert_true(twin.count > 0 && farthest(face.faps[0]) <= 40 + farthest(face.faps[1]) / 2);
-        if (farthest(twin.faps[twin.count - 1]) <= NEAR) {
+        if (farthest(twin.faps[twin.count - 1]) == 0) {
             assert_int_equal(face.count, twin.count);
             continue;
         }
@@ -184,7 +183,7 @@ TEST(the_first_frames_lead_from_rest)
             assert_true(abs(face.faps[j][c] - rest[c]) <= abs(face.faps[FADE + 1][c]) + 100);
 }
 
-/* "unless no channel is farther than 8 FAP units": to either side of it, in either direction. */
+/* "unless it is the neutral one already": to either side of it, in either direction. */
 TEST(a_face_at_rest_stays_where_it_is)
 {
     for (int way = -1; way <= 1; way += 2)
@@ -196,7 +195,7 @@ TEST(a_face_at_rest_stays_where_it_is)
             while (labial_latency(&face.stream).frames > 0)
                 assert_true(tick(&face) < LABIAL_DONE);
             memset(face.stream.fade.pose, 0, sizeof face.stream.fade.pose);
-            face.stream.fade.pose[LABIAL_CHANNELS - 1] = (int16_t)(way * (16 * NEAR + beyond));
+            face.stream.fade.pose[LABIAL_CHANNELS - 1] = (int16_t)(way * 8 - (way > 0) + way * beyond); /* Q4 */
             assert_int_equal(tick(&face), beyond ? LABIAL_OK : LABIAL_DONE);
         }
 }
@@ -253,7 +252,7 @@ TEST(a_late_phoneme_finds_the_face_on_its_way_to_rest)
         }
         for (at = 0; face.numbers[at] != face.numbers[at + 1]; at++) /* the first that stands in the place of a frame */
             assert_true(at + 2 < face.count);
-        assert_true(at > FADE && farthest(twin.faps[at - 1]) > NEAR);
+        assert_true(at > FADE && farthest(twin.faps[at - 1]) > 0);
         assert_memory_equal(face.faps, twin.faps, at * sizeof face.faps[0]);
         judge_way_to_rest(&face, at, eased, twin.faps[at - 1], FRAMES);
         for (unsigned i = 0; i <= eased; i++)
@@ -261,7 +260,7 @@ TEST(a_late_phoneme_finds_the_face_on_its_way_to_rest)
         judge_fade_in(at + eased, at, face.faps[at + eased - 1]);
         assert_memory_equal(face.faps[at + eased + FADE], twin.faps[at + FADE],
                             (twin.count - at - FADE) * sizeof face.faps[0]);
-        assert_int_equal(face.count, twin.count + eased + (farthest(twin.faps[twin.count - 1]) > NEAR ? FRAMES : 0));
+        assert_int_equal(face.count, twin.count + eased + (farthest(twin.faps[twin.count - 1]) > 0 ? FRAMES : 0));
     }
 }
 
@@ -354,7 +353,7 @@ TEST(a_restart_on_the_way_goes_on)
             while (labial_latency(&face.stream).frames > 0)
                 (void)tick(&face);
             memcpy(from, face.faps[face.count - 1], sizeof from);
-            assert_true(farthest(from) > NEAR);
+            assert_true(farthest(from) > 0);
             if (cancelled)
                 assert_int_equal(labial_cancel(&face.stream, 800), LABIAL_OK);
             const unsigned way = face.count;
@@ -393,7 +392,7 @@ TEST(an_exact_stream_has_the_frames_of_its_phonemes)
     assert_true(fixture_is_exact(face.count, fixture_duration(input, COUNT), FIXTURE_RATE));
     for (unsigned t = 0; t < face.count; t++)
         assert_int_equal(face.numbers[t], t);
-    assert_true(farthest(face.faps[face.count - 1]) > NEAR);
+    assert_true(farthest(face.faps[face.count - 1]) > 0);
 
     assert_int_equal(labial_restart(&face.stream), LABIAL_OK); /* which keeps it, and moves nothing */
     const unsigned before = face.count;
@@ -509,7 +508,7 @@ TEST(random_calls_end_at_rest_and_lose_no_frame)
             (void)tick(&face);
         for (unsigned i = was_cut ? 1000 : LABIAL_HOLD_TICKS + FRAMES; i > 0; i--)
             (void)tick(&face);
-        if (face.count > 0 && farthest(face.faps[face.count - 1]) > NEAR)
+        if (face.count > 0 && farthest(face.faps[face.count - 1]) > 0)
             fail_msg("round %u: a channel is %d from rest", round, farthest(face.faps[face.count - 1]));
         const unsigned before = face.count;
         for (unsigned i = 0; i < 20; i++)
@@ -518,16 +517,18 @@ TEST(random_calls_end_at_rest_and_lose_no_frame)
     }
 }
 
-/* Eight FAP units to either side, on every channel, are still at rest. */
-TEST(rest_ends_at_eight_units)
+/* Poses are near as they are rounded, to either side, on every channel. */
+TEST(a_pose_is_near_as_it_is_rounded)
 {
     labial_fade_t fade;
     memset(&fade, 0, sizeof fade);
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        static const int16_t poses[] = { 128, 129, -128, -129, 0 };
+        static const int16_t poses[] = { 135, 136, -136, -137, 0 }, neutral[] = { 7, 8, -8, -9, 0 };
         for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
             fade.pose[c] = poses[i];
-            assert_int_equal(labial_fade_rests(&fade), i % 2 == 0);
+            assert_int_equal(labial_fade_within(&fade, 8), i % 2 == 0);
+            fade.pose[c] = neutral[i];
+            assert_int_equal(labial_fade_within(&fade, 0), i % 2 == 0);
         }
     }
 }

@@ -184,7 +184,7 @@ TEST(rounds_are_the_sum_of_their_steps)
         judge(&host.recorder, first,
               oracle_stream(models, input, count, first > 0 ? held : NULL, NULL, wanted, MAX_FRAMES), FADED_TOLERANCE,
               "rounds", round);
-        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) /* unrounded, for 8 FAP units are at rest and 8.1 are not */
+        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) /* unrounded, for it tells what is near rest */
             held[c] = host.stream->fade.pose[c];
     }
     fixture_close(&host);

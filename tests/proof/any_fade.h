@@ -34,9 +34,9 @@ void labial_fade_stand(labial_fade_t *fade)
     fade->step = 0;
 }
 
-int labial_fade_rests(const labial_fade_t *fade)
+int labial_fade_within(const labial_fade_t *fade, int most)
 {
-    return fade->pose[LABIAL_CHANNELS - 1] == 0 && any_int;
+    return fade->pose[LABIAL_CHANNELS - 1] <= most && any_int;
 }
 
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])

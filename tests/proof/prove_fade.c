@@ -56,7 +56,7 @@ int main(void)
     labial_fade_frames(any_uint32, (uint32_t)Frama_C_interval(1, 255));
     any_pose();
     labial_fade_faps(&fade, faps);
-    labial_fade_rests(&fade);
+    labial_fade_within(&fade, any_int ? 8 : 0);
     labial_fade_stand(&fade);
     return 0;
 }

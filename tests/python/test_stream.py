@@ -58,7 +58,7 @@ def test_the_ways_by_hand() -> None:
 
 
 @pytest.mark.parametrize("pose, touching, length", [
-    (8.0, [0, 1], 9), (8.1, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9),
+    (8.4, [0, 1], 9), (8.6, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9),
     (100.0, [], 9),
 ])
 def test_a_contact_hurries_the_way(pose: float, touching: List[int], length: int) -> None:
@@ -82,13 +82,13 @@ def test_what_is_delivered_does_not_depend_on_the_parts() -> None:
 
 
 def test_a_face_at_rest_needs_no_way_there() -> None:
-    """Up to 8 FAP units, in any channel and either direction."""
+    """If it rounds to the neutral one, in any channel and either direction."""
     pose = np.zeros((1, 13))
     for k, sign in ((0, 1), (12, -1)):
         motion = np.tile(pose, (20, 1))
-        motion[-1, k] = 8.0 * sign
+        motion[-1, k] = 0.46 * sign
         assert len(fade.delivered(motion)) == 20
-        motion[-1, k] = 8.01 * sign
+        motion[-1, k] = 0.54 * sign
         assert len(fade.delivered(motion)) == 32
 
 

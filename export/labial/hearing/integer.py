@@ -31,7 +31,7 @@ from labial.hearing.features import (
 )  # fmt: skip
 from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
-from labial.reference.fade import EASE, FADE, NEAR
+from labial.reference.fade import EASE, FADE
 from labial.tables.visemes import ONE, VISEME_OF, VISEMES
 
 #: log2 is in 1/256; the level in 1/64 of the sum of the bands' log2.
@@ -313,7 +313,7 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
 def _delivered(tables: HearingTables, told: _Told, exact: bool) -> np.ndarray:
     """(T, 13) the poses of :func:`delivered`, Q4."""
     pose = _faded(_resting(told.pose, told.still, tables.ahead + SMOOTHING))
-    if len(pose) and not exact and np.abs(pose[-1]).max() > round(16 * NEAR):
+    if len(pose) and not exact and ((pose[-1] + 8) >> 4).any():
         pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
     return pose
 

@@ -13,8 +13,8 @@ from labial.files.faps import CHANNELS
 FADE = 8
 #: Frames in which a face comes to rest, LABIAL_EASE_FRAMES.
 EASE = 12
-#: FAP units: a face is at rest when no channel is farther from the neutral one.
-NEAR = 8.0
+#: FAP units: a contact hurries no way that begins with a face no channel of which is farther from the neutral one.
+NEAR = 8
 
 
 def smooth(way: np.ndarray) -> np.ndarray:
@@ -25,9 +25,9 @@ def smooth(way: np.ndarray) -> np.ndarray:
 
 def way_length(held: np.ndarray, contact: np.ndarray) -> int:
     """Steps from the pose `held` (13,) to motion that begins anew, the frames of which are in contact as `contact` (T,)
-    says. Where the face is not at rest, it is there with the second frame of the first contact."""
+    says. Where the face is not near rest, it is there with the second frame of the first contact."""
     touching = np.flatnonzero(contact[:FADE])
-    return FADE + 1 if rests(held) or not len(touching) else int(touching[0]) + 2
+    return FADE + 1 if within(held, NEAR) or not len(touching) else int(touching[0]) + 2
 
 
 def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, length: int = FADE + 1) -> np.ndarray:
@@ -46,9 +46,15 @@ def eased(held: np.ndarray, frames: int = EASE) -> np.ndarray:
     return result
 
 
+def within(pose: np.ndarray, most: int) -> bool:
+    """Whether no channel of the pose (13,), FAP, is more than `most` units from the neutral face, as the library rounds
+    it, first to sixteenths."""
+    return bool((np.abs(np.floor((np.rint(16.0 * pose) + 8.0) / 16.0)) <= most).all())
+
+
 def rests(pose: np.ndarray) -> bool:
-    """Whether the pose (13,), FAP, is at rest."""
-    return bool(np.abs(pose).max(initial=0.0) <= NEAR)
+    """Whether the pose (13,), FAP, is the neutral face."""
+    return within(pose, 0)
 
 
 def delivered_in_parts(parts: Iterable[np.ndarray], exact: bool = False) -> Iterator[np.ndarray]:
