@@ -41,7 +41,7 @@ def properties(source: Source) -> str:
         "category": "Device Control",
         "url": source.url,
         "architectures": ",".join(ARCHITECTURES),
-        "includes": "Labial.h," + ",".join(f"{model.name}.h" for model in source.models),
+        "includes": ",".join(["Labial.h", *(path.name for path in source.headers())]),
         "license": "MIT AND CC-BY-4.0 AND BSD-2-Clause",
     }
     return "".join(f"{key}={value}\n" for key, value in values.items())

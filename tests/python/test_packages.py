@@ -421,7 +421,10 @@ def tree(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 def test_platformio(tree: object, tmp_path: Path) -> None:
     """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags."""
     folder = tree("platformio")
-    build = json.loads((folder / "library.json").read_text(encoding="utf-8"))["build"]
+    described = json.loads((folder / "library.json").read_text(encoding="utf-8"))
+    build = described["build"]
+    sketches = [sketch for name in described["export"]["include"] for sketch in (SOURCE / name).glob("*.ino")]
+    assert len(sketches) == 2 and not any('#include "' in sketch.read_text(encoding="utf-8") for sketch in sketches)
     (tmp_path / "main.c").write_text(PROGRAM)
     sources = sorted((folder / build["srcDir"]).rglob("*.c"))
     run(CC, *build["flags"], "-I", build["includeDir"], *sources, tmp_path / "main.c", "-o", tmp_path / "program",

@@ -54,6 +54,26 @@ def test_find_package(installed: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_licences_are_installed(installed: Path) -> None:
+    """The models' attributions are in NOTICE."""
+    assert sorted(path.name for path in (installed / "share" / "doc" / "labial").iterdir()) == ["LICENSE", "NOTICE"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("option", ["-DLABIAL_LOCKS=2", "-DLABIAL_HEAR_SUMS=1"])
+def test_what_a_program_defines_is_no_part_of_a_build(tmp_path: Path, option: str) -> None:
+    """Labial's own programs define neither locks nor sums, and would not link."""
+    out = run(CMAKE, "-S", SOURCE, "-B", tmp_path, "-DLABIAL_BUILD_TESTS=OFF", option)
+    assert "labial-say and the other programs are left out" in out
+    run(CMAKE, "--build", tmp_path)
+
+
+def test_the_published_method_has_a_variable_of_its_own(tmp_path: Path) -> None:
+    out = run(CMAKE, "-S", SOURCE, "-B", tmp_path, "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_PAPER=1", status=1)
+    assert "LABIAL_METHOD=paper selects the published method here" in " ".join(out.split())
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(("asked", "complaint"), [
     ("labial 99.1 REQUIRED", "99.1"), ("labial REQUIRED COMPONENTS french", "french")])  # fmt: skip
 def test_find_package_refuses(installed: Path, tmp_path: Path, asked: str, complaint: str) -> None:
