@@ -335,6 +335,8 @@ LAB = "0.0 0.2 SIL\n0.2 0.5 AA\n"
     (["good.lab", "--rig", "broken.toml"], "broken.toml: output.x.full"),
     (["good.lab", "--model", "good.lab"], "good.lab: "),
     (["good.lab", "--name", "int"], "'int' is no name for a header"),
+    (["good.lab", "--name", "Labial"], "'Labial' is no name for a header"),
+    (["good.lab", "--name", "EOF"], "'EOF' is no name for a header"),
     (["good.lab", "-o", "x.c"], "x.c: what is written is a C header"),
     (["good.lab", "-o", "labial_player.h"], "labial_player.h: this is the name of the player"),
     (["good.lab", "-o", "1st.h"], "'1st' is no name for a header"),

@@ -124,7 +124,7 @@ def test_options_of_one_method_are_not_silently_ignored(
     asked = []
     monkeypatch.setattr("labial.train.train", lambda corpus, **options: asked.append(options) or random_model(3))
     monkeypatch.setattr("labial.train.backed_off", lambda model: [])
-    monkeypatch.setattr("labial.corpus.corpora.read_corpus", lambda path, kind: [])
+    monkeypatch.setattr("labial.corpus.read_corpora", lambda *_, **__: [])
     for method, options, warned in (
         ("paper", [], False), ("labial", ["--look-ahead", "60", "--search-stride", "1"], False),
         ("paper", ["--search-stride", "1"], True), ("paper", ["--look-ahead", "60"], True),

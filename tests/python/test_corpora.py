@@ -319,6 +319,25 @@ def test_files_that_do_not_go_together(tmp_path):
     fails(lambda: read_corpus(tmp_path), tmp_path / "a.lab", "motion")
 
 
+def test_times_in_milliseconds_and_glitches_are_of_the_motion(tmp_path):
+    """Catches an error that names the other file, or none after a training."""
+    fill(tmp_path, ["a"])
+    good = (tmp_path / "a.csv").read_text()
+    rows = [row.partition(",") for row in good.splitlines()[1:]]
+    (tmp_path / "a.csv").write_text("\n".join([HEADER, *(f"{1000 * float(t):g},{rest}" for t, _, rest in rows)]))
+    fails(lambda: read_corpus(tmp_path), tmp_path / "a.csv", "are the times in seconds?")
+    (tmp_path / "a.csv").write_text(good.rstrip("\n").rpartition(",")[0] + ",99999\n")
+    fails(lambda: read_corpus(tmp_path), f"{tmp_path / 'a.csv'}:{1 + len(rows)}", "beyond 10000 FAP units")
+
+
+def test_the_tier_of_an_unknown_label_is_named(tmp_path):
+    """Catches words that are read for phonemes, with an error that does not say where they are from."""
+    fill(tmp_path, ["a"])
+    (tmp_path / "a.lab").unlink()
+    (tmp_path / "a.TextGrid").write_text(grid([(0, 0.5, ""), (0.5, 1, "hello")]))
+    fails(lambda: read_corpus(tmp_path), f"{tmp_path / 'a.TextGrid'}:18", "called 'hello' (tier 'tier0')")
+
+
 def packed(folder, names=None):
     """Moves files of a folder into a zip file there."""
     archive = folder / "episodes.zip"

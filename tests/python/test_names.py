@@ -290,6 +290,8 @@ def test_declared_substitutes_come_first():
     found = {label: substitute_for(label, grid) for label in ("ER", "OY", "SH", "ZH", "NG", "UH")}
     assert found == {"ER": "AH", "OY": "AO", "SH": "CH", "ZH": "JH", "NG": "K", "UH": "UW"}
     assert substitute_for("P", {"B", "SIL"}) == "B" and substitute_for("AA", {"AA", "AO"}) == "AA"
+    assert substitute_for("HH", {"F", "V", "N", "IY"}) == "N" and substitute_for("AA", {"B", "F", "IY", "T"}) == "IY"
+    assert substitute_for("AA", {"B", "F", "T"}) == substitute_for("K", {"B", "F", "T", "IY"}) == "T"
 
 
 def test_names_are_made_once() -> None:

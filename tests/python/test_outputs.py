@@ -9,6 +9,7 @@ import stat
 import subprocess
 import sys
 import threading
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Dict, List
 
@@ -164,6 +165,15 @@ def test_outputs_are_checked_before_the_work(given: Path, monkeypatch: pytest.Mo
         assert main([*command, "-o", target]) == 1
         said = capsys.readouterr().err
         assert said.startswith(f"labial: {target}: ") and complaint in said, said
+
+
+def test_models_are_not_written_over_recordings(given: Path, capsys: pytest.CaptureFixture) -> None:
+    """Would catch `-o` followed by a file of the corpus, which the model would replace."""
+    before = Path("a.lab").read_bytes()
+    for command in ("train", "train-words", "landmarks", *["train-hear"] * bool(find_spec("torch"))):
+        assert main([command, "corpus", "-o", "a.lab"]) == 1
+        assert capsys.readouterr().err == "labial: a.lab: the name of the output ends in .npz\n"
+    assert Path("a.lab").read_bytes() == before
 
 
 def test_folders_and_options_are_checked_before_the_work(given: Path, monkeypatch: pytest.MonkeyPatch,

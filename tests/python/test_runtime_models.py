@@ -77,14 +77,17 @@ def test_damaged_models_are_refused(voice: Path, tmp_path: Path) -> None:
     bad += [good[:at] + bytes([good[at] ^ 1]) + good[at + 1:] for at in range(4, len(good), 1499)]
     for content in bad:
         path.write_bytes(content)
-        with pytest.raises(ModelError, match="bad.lbm: the model"):
+        with pytest.raises(ModelError, match=f"bad.lbm: {'the' if content[:4] == b'LBM1' else 'not a'} model"):
             labial.Model(path)
-    with pytest.raises(FileNotFoundError):
-        labial.Model(tmp_path / "missing.lbm")
+    for missing in (tmp_path / "missing.lbm", ""):
+        with pytest.raises(FileNotFoundError):
+            labial.Model(missing)
     save(random_model(1), tmp_path / "me.npz")
     with pytest.raises(ModelError, match="me.npz: a model that training wrote; labial export .* --blob"):
         labial.Model(tmp_path / "me.npz")
-    for other in (None, 3, b"x", ""):
+    with pytest.raises(ModelError, match="voice.lbm: exported for the library; name the .npz"):
+        load(voice)
+    for other in (None, 3, b"x"):
         with pytest.raises(TypeError):
             labial.Model(other)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="a model is a labial.Model, not str"):

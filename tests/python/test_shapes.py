@@ -111,6 +111,19 @@ def test_back_off_from_class_to_substitute():
         assert (plan.stand_in[index] == index) == (label not in plan.substitutes)
 
 
+def test_a_small_corpus_closes_no_vowel():
+    # Catches vowels that all look like B, the only phoneme with samples enough of its own, and one that stands in with
+    # no sample of its own.
+    labels = SPEECH.phonemes
+    counts = np.zeros(len(labels), dtype=np.int64)
+    for label, count in {"SIL": 12, "B": 13, "AH": 2, "EH": 8, "T": 7, "N": 4, "AA": 3, "IY": 5, "F": 4}.items():
+        counts[labels.index(label)] = count
+    plan = back_off(counts, SPEECH)
+    assert {plan.substitutes[label] for label in ("AA", "AE", "IY", "UW", "OW", "ER", "HH")} == {"AH", "EH"}
+    assert {plan.substitutes[label] for label in ("K", "G", "S", "R", "CH")} == {"T", "N"}
+    assert not {"P", "B", "M", "F", "V"} & set(plan.substitutes.values())
+
+
 def test_an_empty_corpus_is_refused():
     # Catches an error from deep inside a library instead of one that says what is wrong.
     with pytest.raises(LabialError, match="samples"):

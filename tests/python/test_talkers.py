@@ -22,7 +22,7 @@ from labial.tables.model import load, save
 from labial.train import adapted, train
 from labial.train.expression import motion_of
 from labial.train.kernels import Penalties, _design, fit_kernels, regression
-from labial.train.recordings import Recording, recordings
+from labial.train.recordings import Recording, occurrences, recordings
 from labial.train.talkers import SHARED, fit_talkers, weights_of
 from models import write_episode, write_motion
 from packages import SOURCE
@@ -113,6 +113,63 @@ def test_recordings_are_brought_to_the_first_corpus(tmp_path) -> None:
     still = read_corpus(second)[3]
     moved = others[3].frames
     np.testing.assert_allclose(np.corrcoef(moved[:, 4], still.frames[:, 4])[0, 1], 1.0)
+
+
+def test_a_corpus_is_named_once(tmp_path, capsys) -> None:
+    # Catches a corpus that counts twice, and an evaluation of what was trained on: by the same folder or by a copy.
+    first = corpus(tmp_path / "first")
+    (tmp_path / "link").symlink_to(first)
+    for again in (first, f"{first}/", tmp_path / "link", first / ".." / "first"):
+        with pytest.raises(DataError, match="the same folder as .*; name each corpus once"):
+            read_corpora([first, again])
+    shutil.copytree(first, tmp_path / "copy")
+    assert len(read_corpora([first, tmp_path / "copy"])) == 2
+    for command in (["--methods", "mean"], ["--leave-out-talkers", "--methods", "mean"]):
+        assert main(["evaluate", str(first), str(tmp_path / "copy"), "-o", str(tmp_path / "r"), *command]) == 1
+        assert f"copy/anna_1: the same motion as {first}/anna_1: " in capsys.readouterr().err
+
+
+def test_folders_of_one_name_are_talkers_of_their_own(tmp_path) -> None:
+    # Catches two people who count as one, as anna/corpus and bert/corpus did, and one person's name that is lost.
+    folders = []
+    for name, toml in (("anna", ""), ("bert", ""), ("carl", TOML)):
+        (tmp_path / name).mkdir()
+        folders.append(corpus(tmp_path / name / "corpus", toml=toml))
+    alone = corpus(tmp_path / "alone")
+    talkers = [{item.source.talker for item in found} for found in read_corpora([*folders, alone])]
+    assert talkers == [{"anna/corpus"}, {"bert/corpus"}, {"anna", "bert"}, {"alone"}]
+
+
+def test_motion_that_is_unknown_is_not_learnt(tmp_path) -> None:
+    # Catches a straight line that is learnt where frames are lost, a face that is held for phonemes after the last
+    # frame, and a rest that is lost where only silence is.
+    folder = corpus(tmp_path / "c")
+    times = 0.01 + 0.02 * np.arange(100)
+    for name, kept, lab in (("anna_1", (times < 1.2) | (times > 1.6), "0 1 SIL\n1 2 AA\n"),
+                            ("anna_2", times < 1.5, "0 1 SIL\n1 1.6 AA\n1.6 2 B\n"),
+                            ("bert_in_1", times < 1.8, "0 1 SIL\n1 1.8 AA\n1.8 2.4 SIL\n")):
+        write_motion(folder / f"{name}.csv", times[kept], np.random.default_rng(0).normal(0, 9, (kept.sum(), 13)))
+        (folder / f"{name}.lab").write_text(lab)
+    with pytest.warns(UserWarning, match=r"c/anna_1: no motion from 1.19 to 1.61 s \(and 1 more\): nothing is "):
+        found = read_corpus(folder)
+    gap, end, *rest = recordings(found, SPEECH, 50)
+    assert np.flatnonzero(~gap.weights.any(axis=1)).tolist() == list(range(60, 80))
+    assert np.flatnonzero(~end.weights.any(axis=1)).tolist() == list(range(75, 100))
+    assert all(item.weight is None for item in rest)
+    assert end.learnt().tolist() == [True, True, False]
+    assert occurrences([gap, end], SPEECH).learnt.tolist() == [True, False, True, True, False]
+
+
+def test_a_corpus_that_teaches_nothing_is_refused(tmp_path) -> None:
+    # Catches a model of a still mouth, or of no phoneme, that looks like any other.
+    still, silent = corpus(tmp_path / "still"), corpus(tmp_path / "silent")
+    for name in NAMES:
+        write_motion(still / f"{name}.csv", 0.01 + 0.02 * np.arange(100), np.zeros((100, 13)))
+        (silent / f"{name}.lab").write_text("0 2 SIL\n")
+    with pytest.raises(DataError, match="still: nothing moves"):
+        read_corpora([still])
+    with pytest.raises(DataError, match="silent: there is no phoneme of speech but silence"):
+        read_corpora([silent])
 
 
 def test_a_corpus_gives_its_scale_to_all(tmp_path) -> None:
@@ -412,14 +469,21 @@ def test_the_command_adapts(shared, tmp_path, capsys) -> None:
     assert main(["train", str(folder), "--adapt", str(model), "-o", str(out), "--quiet"]) == 1
     assert "there are a, b" in capsys.readouterr().err
     assert not out.exists()
-    mine = write(tmp_path / "corpus", folder)
-    assert main(["train", str(mine), "--adapt", str(model), "-o", str(out), "--quiet"]) == 0
-    assert "adapted to 2 episodes, 6 s" in capsys.readouterr().out
+    short = write(tmp_path / "short", folder, 1)
+    assert main(["train", str(short), "--adapt", str(model), "-o", str(out), "--quiet"]) == 1
+    assert "too little to adapt a model to: 5 s are the least" in capsys.readouterr().err and not out.exists()
+    mine = write(tmp_path / "corpus", folder, 6)
+    assert main(["train", str(mine), "--adapt", str(model), "-o", str(out), "--quiet", "--method", "paper",
+                 "--look-ahead", "60"]) == 0
+    told = capsys.readouterr()
+    assert "adapted to 6 episodes, 2" in told.out and "--method and --look-ahead: of no effect with --adapt" in told.err
+    assert "s of motion are little to adapt a model to" in told.err
     assert np.abs(load(out).kernel - shared.kernel).max() > 1.0
 
 
-def write(folder: Path, source: Path) -> Path:
-    """A corpus of two of the addresses."""
+def write(folder: Path, source: Path, count: int) -> Path:
+    """A corpus of some of the addresses."""
     with zipfile.ZipFile(source / "episodes.zip") as packed:
-        packed.extractall(folder, [f"talker_b_farewell_{name}" for name in ("01.csv", "01.lab", "03.csv", "03.lab")])
+        names = [name for name in packed.namelist() if name.startswith("talker_b_")]
+        packed.extractall(folder, sorted(names)[: 2 * count])
     return folder

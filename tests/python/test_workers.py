@@ -157,6 +157,24 @@ def test_a_signal_ends_the_workers(working: List[str], number: signal.Signals) -
     assert not own & set(os.listdir("/dev/shm"))
 
 
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs masks of signals")
+def test_workers_do_not_hear_ctrl_c(tmp_path: Path) -> None:
+    """A terminal sends it to them too: those that just start would print where they were."""
+    script = tmp_path / "script.py"
+    script.write_text("""
+import signal
+from labial.train.workers import Workers
+def hears(_):
+    return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+if __name__ == "__main__":
+    with Workers(2, False) as workers:
+        print(hears(0), *workers.run("x", hears, range(2)), hears(0))
+""")
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, timeout=120,
+                          env={**os.environ, "PYTHONPATH": str(SOURCE / "export")})
+    assert done.stdout == "True False False True\n", done.stdout + done.stderr
+
+
 @pytest.mark.slow
 def test_a_cluster_that_is_lost_is_named(working: List[str]) -> None:
     """Not the output, and no defect."""

@@ -85,9 +85,10 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
 
 def run_landmarks(options: argparse.Namespace) -> int:
     """Writes the landmarks."""
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
 
     check(options.output)
+    check_suffix(options.output, ".npz")
     with needs("tracking", "record"):
         from labial.capture.track import landmarks
 
@@ -115,7 +116,7 @@ def add_record(command: argparse.ArgumentParser) -> None:
 
 def run_record(options: argparse.Namespace) -> int:
     """Writes the corpus."""
-    with needs("recording", "train"):
+    with needs("recording", "record"):
         from labial.capture.record import record
     from labial.capture.landmarks import Given, parse_size
     from labial.corpus.phonesets import PHONE_SETS

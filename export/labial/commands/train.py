@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Dict, Sequence
 
 from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
-from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
+from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError, needs
 from labial.files.arguments import positive, seed, whole
 
@@ -18,6 +18,13 @@ if TYPE_CHECKING:
 
 #: Seconds of speech that a model is trained on at the least, and below which a warning says that it is little.
 LEAST, FEW = 15, 120
+#: The same of what a model is adapted to: what is learnt is less, the less there is.
+LEAST_OF_TALKER, FEW_OF_TALKER = 5, 30
+
+#: The options that ``--adapt`` does not use, and what they are unless they are given.
+_OF_TRAINING = {"kind": KINDS[0], "method": METHODS[-1], "fps": FPS, "codebook": None, "components": None,
+                "look_ahead": None, "search_stride": None, "talker_variance": None, "asymmetric": False,
+                "normalise": False, "seed": 0, "engine": None}
 
 
 def add_train(command: argparse.ArgumentParser) -> None:
@@ -62,10 +69,11 @@ def run_train(options: argparse.Namespace) -> int:
     with needs("training", "train"):
         from labial.train import backed_off, check_options, train, without_apex
     from labial.corpus import read_corpora
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
     from labial.tables.model import save
 
     check(options.output)
+    check_suffix(options.output, ".npz")
     if options.adapt is not None:
         return _adapt(options)
     own = _labials_own(options)
@@ -99,14 +107,25 @@ def _seconds(episodes: Sequence[Episode]) -> float:
 
 def _adapt(options: argparse.Namespace) -> int:
     """``--adapt``: writes the model of one talker."""
-    from labial.corpus import read_corpus
+    from labial.corpus.corpora import read_each
     from labial.tables.model import load, save
     from labial.train import adapted
 
+    ignored = [name for name, usual in _OF_TRAINING.items() if getattr(options, name) != usual]
+    if ignored:
+        names = " and ".join("--" + name.replace("_", "-") for name in ignored)
+        warnings.warn(f"{names}: of no effect with --adapt", stacklevel=1)
     shared = load(options.adapt)
-    episodes = [episode for corpus in options.corpus for episode in read_corpus(corpus, shared.kind)]
+    episodes = [episode for corpus in read_each(options.corpus, shared.kind) for episode in corpus]
+    seconds = _seconds(episodes)
+    if seconds < LEAST_OF_TALKER:
+        raise LabialError(f"{seconds:.1f} s of motion are too little to adapt a model to: {LEAST_OF_TALKER} s are the "
+                          "least, and half a minute is better")
     model = adapted(shared, episodes, options.attribution)
     save(model, options.output)
+    if seconds < FEW_OF_TALKER:
+        warnings.warn(f"{seconds:.0f} s of motion are little to adapt a model to; half a minute is better",
+                      stacklevel=1)
     about: Any = model.training["adapted"]
     print(f"{options.output}: {options.adapt}, adapted to {about['episodes']} episodes, "
           f"{about['frames'] / model.fps:.0f} s")

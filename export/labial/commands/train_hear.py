@@ -57,9 +57,10 @@ def run_train_hear(options: argparse.Namespace) -> int:
         from labial.hearing import clips, prepared, train
         from labial.hearing.model import load, save
     from labial.files.grammar import read_text
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
 
     check(options.output)
+    check_suffix(options.output, ".npz")
     if options.sounds and options.teacher is None:
         raise LabialError("--sounds needs a --teacher")
     count = len(options.folder) + len(options.sounds)

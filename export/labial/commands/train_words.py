@@ -30,9 +30,10 @@ def run_train_words(options: argparse.Namespace) -> int:
 
     with needs("training", "tools"):
         from labial.words import dictionary, tables, training
-    from labial.files.outputs import check
+    from labial.files.outputs import check, check_suffix
 
     check(options.output)
+    check_suffix(options.output, ".npz")
     report = functools.partial(print, file=sys.stderr) if shows_progress(options) else None
     entries = dictionary.read_dictionary(options.dictionary)
     common = dictionary.read_common(options.common or dictionary.COMMON)

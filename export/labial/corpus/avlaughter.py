@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from labial.corpus.episode import Episode, Segment
-from labial.corpus.folder import check_span, read_frames
+from labial.corpus.folder import check_span, check_unit, read_frames
 from labial.corpus.phonesets import LAUGHTER, PhoneSet
 from labial.corpus.timings import SourceSegment, phoneme_segments, read_segments
 from labial.errors import DataError
@@ -59,6 +59,7 @@ def read_avlaughter(
             reasons.append(DataError(annotation, None, "contains speech"))
             continue
         times, frames = read_frames(motion)
+        check_unit(motion, times)
         episode = Episode(name, times, frames, segments)
         check_span(annotation, episode)
         episodes.append(episode)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
-from typing import List, NamedTuple, Sequence, Union
+from typing import Dict, List, NamedTuple, Sequence, Union
 
 import numpy as np
 
@@ -50,16 +52,59 @@ def read_corpus(path: Union[str, os.PathLike[str]], kind: str = "speech") -> Lis
     if refused:
         count = f"{len(refused)} of {len(refused) + len(episodes)}"
         warnings.warn(f"{count} recordings were left out, the first for this reason: {refused[0]}", stacklevel=2)
+    unseen = [(item.name, *stretch) for item in episodes for stretch in item.unseen(phone_set.silence)]
+    if unseen:
+        name, start, end = unseen[0]
+        more = f" (and {len(unseen) - 1} more)" if unseen[1:] else ""
+        warnings.warn(f"{os.path.join(path, name)}: no motion from {start:.2f} to {end:.2f} s{more}: nothing is learnt "
+                      "there", stacklevel=2)
     return with_sources(path, episodes)
 
 
+def read_each(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech") -> List[List[Episode]]:
+    """Reads several corpora as :func:`read_corpus` does. Folders of one name whose ``corpus.toml`` does not say who
+    speaks are different talkers. Raises DataError for a folder that is named twice, and for a corpus in which nobody
+    speaks or nothing moves."""
+    folders: Dict[Path, Union[str, os.PathLike[str]]] = {}
+    for path in paths:
+        where = Path(path).resolve()
+        if where in folders:
+            raise DataError(path, None, f"the same folder as {os.fspath(folders[where])}; name each corpus once")
+        folders[where] = path
+    corpora = [read_corpus(path, kind) for path in paths]
+    silence = PHONE_SETS[kind].silence
+    for path, corpus in zip(paths, corpora):
+        if all(segment.label == silence for item in corpus for segment in item.segments):
+            raise DataError(path, None, f"there is no phoneme of {kind} but silence")
+        if not any(np.ptp(item.frames, axis=0).any() for item in corpus):
+            raise DataError(path, None, "nothing moves: the FAPs of each episode are the same in all frames")
+    for place, where in enumerate(folders):
+        alike = [other.parent for other in folders if other.name == where.name]
+        if len(alike) > 1:
+            talker = os.path.relpath(where, os.path.commonpath(alike))
+            corpora[place] = [replace(item, source=replace(item.source, talker=talker))
+                              if item.source.recording == str(where) else item for item in corpora[place]]
+    return corpora
+
+
 def read_corpora(
-    paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False
+    paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False,
+    distinct: bool = False
 ) -> List[List[Episode]]:
-    """Reads several corpora as :func:`read_corpus` does, and brings every recording's mean and scale, channel by
-    channel, to those of the first; with `even_sides` those of the mean of both sides of the mouth. Includes what every
-    corpus excludes, with a warning."""
-    corpora = with_something_left([read_corpus(path, kind) for path in paths])
+    """Reads several corpora as :func:`read_each` does, and brings every recording's mean and scale, channel by channel,
+    to those of the first; with `even_sides` those of the mean of both sides of the mouth. Includes what every corpus
+    excludes, with a warning. With `distinct` raises DataError for two episodes of the same motion."""
+    corpora = read_each(paths, kind)
+    if distinct:
+        known: Dict[bytes, str] = {}
+        for path, corpus in zip(paths, corpora):
+            for item in corpus:
+                name = os.path.join(path, item.name)
+                other = known.setdefault(sha256(item.times.tobytes() + item.frames.tobytes()).digest(), name)
+                if other != name:
+                    raise DataError(name, None, f"the same motion as {other}: one would be judged by a model that was "
+                                    "trained on the other")
+    corpora = with_something_left(corpora)
     if even_sides:
         corpora = [with_even_sides(corpus) for corpus in corpora]
     return brought_together(corpora, PHONE_SETS[kind].silence)

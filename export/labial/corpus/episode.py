@@ -7,6 +7,10 @@ from typing import TYPE_CHECKING, FrozenSet, Iterable, List, Optional, Tuple
 
 from labial.files.faps import SIDES
 
+#: Seconds from one frame to the next, or to a phoneme before the first or after the last, beyond which the motion
+#: counts as unknown.
+UNSEEN = 0.2
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -65,6 +69,20 @@ class Episode:
         inside = (at < len(ends)) & (self.times >= self.segments[0].start)
         result: np.ndarray = inside & voiced[np.minimum(at, len(ends) - 1)]
         return result
+
+    def unseen(self, silence: str) -> List[Tuple[float, float]]:
+        """The stretches, in seconds, whose motion is unknown: gaps over `UNSEEN`, and what lies outside the motion if
+        phonemes other than `silence` do by as much. In silence the mouth may be held at rest."""
+        import numpy as np
+
+        times = self.times
+        found = [(float(times[i]), float(times[i + 1])) for i in np.flatnonzero(np.diff(times) > UNSEEN + 1e-6)]
+        sounding = [segment for segment in self.segments if segment.label != silence]
+        if sounding and sounding[0].start < times[0] - UNSEEN:
+            found.insert(0, (self.segments[0].start, float(times[0])))
+        if sounding and sounding[-1].end > times[-1] + UNSEEN:
+            found.append((float(times[-1]), self.segments[-1].end))
+        return found
 
 
 # ---- Mouths whose two sides move alike -------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from typing import Dict, Iterator, List, Sequence, Tuple, Union
 
 import numpy as np
 
-from labial.corpus.episode import Episode
+from labial.corpus.episode import UNSEEN, Episode
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import PhoneSet
 from labial.corpus.timings import LONGEST, phoneme_segments
@@ -27,10 +27,10 @@ PathLike = Union[str, os.PathLike[str]]
 HEADER = ",".join(("time", *FAP_COLUMNS))
 #: Phonemes may exceed the motion by this many seconds; more means that the two files do not belong together.
 SLACK = 1.0
-#: Most seconds between two frames of an episode: interpolated motion over longer gaps teaches nothing.
+#: Most seconds between two frames of an episode; more means that frames are lost, or that times are not in seconds.
 LONGEST_GAP = 10.0
-#: Largest FAP, FAP units: a face is some thousands wide.
-LARGEST = 1e6
+#: Largest value of a frame, and largest FAP of the mouth, FAP units: a face is some thousands wide.
+LARGEST, LARGEST_OF_MOUTH = 1e6, 1e4
 
 
 def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
@@ -41,7 +41,7 @@ def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     rows: List[List[float]] = []
     for line, fields in table_rows(path, lines, CHANNELS + 1):
         row = [number(path, line, field) for field in fields]
-        check_range(path, line, row[0], row[1:])
+        check_range(path, line, row[0], row[1:], LARGEST_OF_MOUTH)
         if rows and row[0] <= rows[-1][0]:
             raise DataError(path, line, f"time {row[0]:g} does not follow {rows[-1][0]:g}")
         rows.append(row)
@@ -51,13 +51,13 @@ def read_frames(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return table[:, 0].copy(), table[:, 1:].copy()
 
 
-def check_range(path: PathLike, line: int, time: float, values: Sequence[float]) -> None:
-    """Raises DataError for a time beyond a day and for FAPs beyond `LARGEST`."""
+def check_range(path: PathLike, line: int, time: float, values: Sequence[float], most: float = LARGEST) -> None:
+    """Raises DataError for a time beyond a day and for FAPs beyond `most`."""
     if abs(time) > LONGEST:
         raise DataError(path, line, f"time {time:g} s is more than a day")
     largest = max(values, key=abs)
-    if abs(largest) > LARGEST:
-        raise DataError(path, line, f"the value {largest:g} is beyond {LARGEST:.0f} FAP units")
+    if abs(largest) > most:
+        raise DataError(path, line, f"the value {largest:g} is beyond {most:.0f} FAP units")
 
 
 def read_episode(frames: PathLike, timings: PathLike, phone_set: PhoneSet) -> Episode:
@@ -65,8 +65,16 @@ def read_episode(frames: PathLike, timings: PathLike, phone_set: PhoneSet) -> Ep
     times, values = read_frames(frames)
     segments = phoneme_segments(timings, read_timings(timings), phone_set)
     episode = Episode(Path(frames).stem, times, values, segments)
+    check_unit(frames, times)
     check_span(timings, episode)
     return episode
+
+
+def check_unit(path: PathLike, times: np.ndarray) -> None:
+    """Raises DataError for frames whose `times` (T,), seconds, are too far apart to learn from."""
+    step = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    if step > UNSEEN:
+        raise DataError(path, None, f"its frames are {step:g} s apart, over {UNSEEN:g} s; are the times in seconds?")
 
 
 def check_span(path: PathLike, episode: Episode) -> None:

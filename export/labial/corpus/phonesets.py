@@ -99,8 +99,9 @@ def aliases_for(kind: str, phonemes: Sequence[str], own: Dict[str, str]) -> Dict
 def substitute_for(label: str, available: Collection[str]) -> str:
     """The phoneme of `available` that looks most like `label` (of either kind): `label` itself if it is there.
 
-    Candidates in order: those declared for the phoneme, its viseme class, the vowels if it is one, all others but
-    silence, silence. Raises ValueError when no phoneme of the kind is available or `label` is none.
+    Candidates in order: those declared for the phoneme, its viseme class, the other vowels if it is one, else the other
+    consonants, all others but silence, silence; P, B, M, F and V, which close the lips, stand in for the rest last.
+    Raises ValueError when no phoneme of the kind is available or `label` is none.
     """
     for candidate in candidates_for(label):
         if candidate in available:
@@ -118,9 +119,10 @@ def candidates_for(label: str) -> List[str]:
     sounding = [item for item in phone_set.phonemes if item != phone_set.silence]
     order = [label, *_ALIKE.get(label, "").split()]
     order += [item for item in sounding if class_of[item] == class_of[label]]
-    order += [item for item in sounding if boundary[item] == boundary[label]]
-    order += [*sounding, phone_set.silence]
-    return list(dict.fromkeys(order))
+    closed = "P B M F V".split()
+    vowel = {item: boundary[item] and item not in closed for item in boundary}
+    order += sorted(sounding, key=lambda item: (item in closed, vowel[item] != vowel[label]))
+    return list(dict.fromkeys([*order, phone_set.silence]))
 
 
 def _phone_set(
@@ -177,8 +179,8 @@ _ALIKE = {
     "IY": "IH EY Y EH", "OW": "AO UH UW OY AA", "OY": "AO OW AY UW", "UH": "UW OW AO AH", "UW": "UH OW W AO",
     "P": "B M", "B": "P M", "M": "B P", "F": "V TH", "V": "F DH", "TH": "DH T S", "DH": "TH D L", "T": "D N S L",
     "D": "T N L", "N": "D T L", "L": "N D T", "S": "Z T", "Z": "S D", "SH": "CH JH ZH S R", "ZH": "JH SH CH Z R",
-    "CH": "SH JH ZH T", "JH": "CH ZH SH D", "K": "G NG HH", "G": "K NG HH", "NG": "K G N HH", "HH": "K G AH",
-    "R": "ER W L", "W": "UW UH R OW", "Y": "IY IH EY",
+    "CH": "SH JH ZH T", "JH": "CH ZH SH D", "K": "G NG HH T D N", "G": "K NG HH D T N", "NG": "K G N HH",
+    "HH": "K G AH", "R": "ER W L", "W": "UW UH R OW", "Y": "IY IH EY",
     "ne": "nasal", "nasal": "ne silence", "click": "plosive", "plosive": "click fricative", "fricative": "e plosive",
     "ic": "e a", "e": "a ic", "a": "e cackle ic", "o": "e a", "cackle": "a e ic", "grunt": "nasal e",
     **{graded: f"{label} e" for label, grades in LAUGHTER_GRADES.items() for graded in grades},

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.core import lines
@@ -32,6 +33,8 @@ LONGEST = 86400.0
 _LONGEST_PHONEME = 3600
 #: Seconds. No sound of speech lasts longer; the times of one that does are probably in another unit.
 _LONGEST_SOUND = 10.0
+#: A TextGrid's interval tier and its name.
+_TIER = re.compile(r'"IntervalTier"[^"]*"((?:[^"]|"")*)"')
 _NO_LAUGH = "one model alone cannot laugh, so laughs are silence; labial-say and labial.render() laugh"
 
 
@@ -45,17 +48,21 @@ class SourceSegment(Segment):
 
     line: Optional[int] = None
     labels: str = AUTO  #: the set that the format's labels are of
+    tier: str = field(default="", compare=False)  #: the name of a TextGrid's tier
 
 
 def read_segments(path: PathLike, form: str = AUTO, tier: Optional[str] = None, number: int = 0) -> List[SourceSegment]:
     """Reads timings in one of the formats of labial/timings.h, which the library parses; "auto" tells by the first line
     which. Of a TextGrid the interval tier called `tier` or, from 1 on, the one of this `number`, which may be none;
     without them that of phones."""
-    segments = []
+    segments: List[SourceSegment] = []
+    text, name = read_text(path), ""
     try:
-        for item in lines.timings(read_text(path).encode("utf-8"), form, tier, number):
+        for item in lines.timings(text.encode("utf-8"), form, tier, number):
+            if not segments:
+                name = next(iter(_TIER.findall("\n".join(text.split("\n")[: item.line]))[-1:]), "")
             segments.append(SourceSegment(item.start, item.end, item.label, item.apex, item.word, item.line,
-                                          "xsampa" if item.xsampa else AUTO))
+                                          "xsampa" if item.xsampa else AUTO, name))
     except lines.Malformed as error:
         raise DataError(path, error.line, str(error)) from None
     if not segments and not number:
@@ -102,7 +109,8 @@ def phoneme_segments(
         label = laugh if laughs and laugh else meaning(item, phone_set, labels)
         if label is None:
             where = f"interval {place}: " if item.line is None else ""
-            problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}")
+            tier = f" (tier {item.tier!r})" if item.tier else ""
+            problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}{tier}")
             if strict:
                 raise problem
             label = phone_set.silence if laugh else phone_set.nearest(item.label, labels)

@@ -40,7 +40,7 @@ def run(
     check_variance(options.talker_variance)
     Workers(jobs, False, engine)
     options = replace(options, synthetic=is_synthetic(corpora[0]))
-    first, *others = read_corpora(corpora, options.kind)
+    first, *others = read_corpora(corpora, options.kind, distinct=True)
     further = [episode for corpus in others for episode in corpus]
     outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress,
                         folder=Path(output))

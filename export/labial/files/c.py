@@ -15,7 +15,7 @@ _C_KEYWORDS = frozenset(
     friend goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
     public register reinterpret_cast restrict return short signed sizeof static static_assert static_cast struct switch
     template this thread_local throw true try typedef typeid typename union unsigned using virtual void volatile wchar_t
-    while xor xor_eq main errno linux unix typeof""".split()
+    while xor xor_eq main errno linux unix typeof null eof""".split()
 )
 #: Headers of C and POSIX whose names could be a file's: NAME.h beside the sources would take their place.
 _C_HEADERS = frozenset(
@@ -31,7 +31,8 @@ def check_name(name: str, what: str = "model") -> None:
         raise ModelError(
             f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
         )
-    if name in _C_KEYWORDS or name.lower() in _C_HEADERS or name.startswith("labial"):
+    lower = name.lower()  # constants of the name, NAME_LABEL, are in capitals
+    if lower in _C_KEYWORDS or lower in _C_HEADERS or lower.startswith("labial"):
         raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
 
 

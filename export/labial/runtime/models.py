@@ -25,8 +25,8 @@ from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
 LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
-#: How a ``.npz`` begins.
-_NPZ = b"PK\x03\x04"
+#: How a ``.npz`` and a ``.lbm`` begin.
+_NPZ, _LBM = b"PK\x03\x04", b"LBM1"
 
 
 class Model:
@@ -52,9 +52,10 @@ class Model:
     address: int
 
     def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
-        self.name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else ""
-        if not isinstance(self.name, str) or not self.name:
+        name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
+        if not isinstance(name, str):
             raise TypeError(f"a model is named by a path, not by {type(path).__name__}")
+        self.name = name
         with open(self.name, "rb") as file:
             content = file.read(limits.BLOB + 1)
         if len(content) > limits.BLOB:
@@ -62,6 +63,8 @@ class Model:
         if content.startswith(_NPZ):
             raise ModelError(f"{self.name}: a model that training wrote; labial export {self.name} --name NAME --blob "
                              "-o DIR makes the NAME.lbm of it that this call reads")
+        if not content.startswith(_LBM):
+            raise ModelError(f"{self.name}: not a model that labial export --blob wrote (.lbm)")
         # The library uses the tables in place: this object keeps both blocks alive.
         self._content = memory(len(content))
         ctypes.memmove(self._content, content, len(content))

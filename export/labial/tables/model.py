@@ -251,7 +251,10 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
     except OSError as error:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
     except ArrayError as error:
-        raise ModelError(f"{os.fspath(path)}: not a labial model: {error}") from None
+        with open(path, "rb") as file:
+            blob = file.read(4) == b"LBM1"
+        why = "exported for the library; name the .npz that it was made of" if blob else f"not a labial model: {error}"
+        raise ModelError(f"{os.fspath(path)}: {why}") from None
     except ModelError as error:
         raise ModelError(f"{os.fspath(path)}: {error}") from None
 

@@ -79,6 +79,10 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
         seen = np.flatnonzero(resampled.length > 0)  # the run-time skips phonemes without frames
         phoneme = np.array([number[labels[index]] for index in seen], dtype=np.int64)
         length = resampled.length[seen]
+        centre = episode.segments[0].start + (np.arange(len(resampled.motion)) + 0.5) / fps
+        missing = np.zeros(len(centre), dtype=bool)
+        for start, end in episode.unseen(phone_set.silence):
+            missing |= (centre > start) & (centre < end)
         result.append(
             Recording(
                 name=episode.name,
@@ -87,7 +91,7 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
                 length=length,
                 apex=resampled.apex[seen],
                 frames=resampled.motion,
-                weight=_weights(episode.source, np.repeat(phoneme, length) == silence),
+                weight=_weights(episode.source, np.repeat(phoneme, length) == silence, missing),
                 talker=episode.source.talker,
                 stretch=np.array(episode.source.stretch) if episode.source.stretch else None,
             )
@@ -126,14 +130,16 @@ def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Reco
     )
 
 
-def _weights(source: Source, silent: np.ndarray) -> Optional[np.ndarray]:
-    """(T, 13) weights of the values of an episode, of which `silent` (T,) are silence; None if all are 1."""
-    if source == replace(source, weight=1.0, left_out=frozenset(), silences=True):
+def _weights(source: Source, silent: np.ndarray, missing: np.ndarray) -> Optional[np.ndarray]:
+    """(T, 13) weights of the values of an episode, of which `silent` (T,) are silence, and of `missing` (T,) the
+    motion is not known; None if all are 1."""
+    if source == replace(source, weight=1.0, left_out=frozenset(), silences=True) and not missing.any():
         return None
     weight = np.full((len(silent), CHANNELS), source.weight)
     weight[:, sorted(source.left_out)] = 0.0
     if not source.silences:
         weight[silent] = 0.0
+    weight[missing] = 0.0
     return weight
 
 
@@ -146,7 +152,7 @@ class Occurrences:
     previous: np.ndarray  #: (S,) int64, viseme class of the phoneme before; that of silence at the start
     next: np.ndarray  #: (S,) int64, viseme class of the phoneme after; that of silence at the end
     apex_shape: np.ndarray  #: (S, 13) human motion at the apex, FAP
-    learnt: np.ndarray  #: (S,) bool, whether anything of it is learnt
+    learnt: np.ndarray  #: (S,) bool, whether its apex is learnt
 
     def vectors(self) -> np.ndarray:
         """(S, 14): the training vectors of equation 1, shape (FAP) at the apex joined with the duration (seconds)."""
@@ -170,5 +176,5 @@ def occurrences(material: List[Recording], phone_set: PhoneSet) -> Occurrences:
         previous=np.concatenate([before for before, _ in around]),
         next=np.concatenate([after for _, after in around]),
         apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
-        learnt=np.concatenate([item.learnt() for item in material]),
+        learnt=np.concatenate([item.weights[item.apex].any(axis=1) for item in material]),
     )

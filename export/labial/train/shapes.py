@@ -103,8 +103,7 @@ def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:
             pooled[label] = phone_set.classes[classes[index]]
         else:
             members.append(None)
-    own = [label for label, count in zip(labels, counts) if count >= MINIMUM_SAMPLES]
-    available = own or [label for label, who in zip(labels, members) if who is not None]
+    available = [label for label, who, count in zip(labels, members, counts) if who is not None and count]
     if not available:
         raise LabialError(f"no phoneme has the {MINIMUM_SAMPLES} samples that a lip shape mixture needs")
     stand_in = list(range(len(labels)))

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import signal
 import warnings
 from concurrent.futures import CancelledError
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from multiprocessing import resource_tracker
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Type, TypeVar
 
 from joblib import Parallel, delayed, parallel_config
 from joblib.externals.loky import get_reusable_executor
+from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 from threadpoolctl import threadpool_limits
 from tqdm import tqdm
@@ -28,6 +31,22 @@ def _alone(function: Callable[[Task], Result], place: int, task: Task) -> Tuple[
     the number of cores. The limit stays in this process, which may run other tasks in other threads."""
     threadpool_limits(1)
     return place, function(task)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Holds Ctrl-C back until the block ends. Processes that are started in the block never see it, nor print where
+    they were: this one ends them."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    for tracker in (resource_tracker, loky_tracker):  # whose start would let Ctrl-C through
+        tracker.ensure_running()
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class Workers:
@@ -71,7 +90,8 @@ class Workers:
         if self._jobs > 1:
             calls = (delayed(partial(_alone, function, place))(task) for place, task in enumerate(tasks))
             with self._failing(what):
-                results = Parallel(return_as="generator_unordered", batch_size=1)(calls)
+                with _without_interrupts():
+                    results = Parallel(return_as="generator_unordered", batch_size=1)(calls)
                 return self._listed(what, results, len(tasks), done)
         with threadpool_limits(1):
             return self._listed(what, ((place, function(task)) for place, task in enumerate(tasks)), len(tasks), done)
