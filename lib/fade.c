@@ -7,6 +7,9 @@
 
 #include "fixed.h"
 
+/* Channels of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58. */
+#define CLOSING 0x799u
+
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
 {
     uint32_t frames;
@@ -24,14 +27,19 @@ void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
         fade->from[k] = fade->pose[k];
     }
     fade->step = 1;
-    fade->length = (uint16_t)length;
+    fade->length = fade->closing = (uint16_t)length;
+}
+
+void labial_fade_close(labial_fade_t *fade, unsigned closing)
+{
+    fade->closing = (uint16_t)closing;
 }
 
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
     static const int16_t neutral[LABIAL_CHANNELS] = { 0 };
     const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
-    int32_t share;
+    int32_t share, closed;
     unsigned k;
     if (!motion)
         motion = neutral;
@@ -44,9 +52,11 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
         return;
     }
     share = labial_ease(step, fade->length);
+    closed = step < fade->closing ? labial_ease(step, fade->closing) : (int32_t)1 << 14;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
-        fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * share + 8192) >> 14), INT16_MAX);
+        const int32_t own = CLOSING >> k & 1u ? closed : share;
+        fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * own + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);
 }
@@ -63,13 +73,18 @@ static int rounded(const labial_fade_t *fade, unsigned channel)
     return (fade->pose[channel] + 8) >> 4;
 }
 
-int labial_fade_within(const labial_fade_t *fade, int most)
+int labial_fade_rests(const labial_fade_t *fade)
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
-        if (rounded(fade, k) > most || rounded(fade, k) < -most)
+        if (rounded(fade, k) != 0)
             return 0;
     return 1;
+}
+
+int labial_fade_opening(const labial_fade_t *fade)
+{
+    return -(rounded(fade, 3) + rounded(fade, 4));
 }
 
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])

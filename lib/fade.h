@@ -21,6 +21,9 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
 /* Begins a way of 1 to 65535 steps from the pose that was delivered last, which goes on moving or stands still. */
 void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on);
 
+/* Jaw and lips arrive with step `closing` of the way that has just begun. */
+void labial_fade_close(labial_fade_t *fade, unsigned closing);
+
 /* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral face. */
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
 
@@ -35,9 +38,11 @@ static inline uint32_t labial_fade_left(const labial_fade_t *fade, uint32_t whol
     return labial_quotient(((uint32_t)fade->length - fade->step) * whole, (uint32_t)fade->length);
 }
 
-/* Whether no channel of the pose that was delivered last is more than `most` FAP units from the neutral face; 0: whether
- * it is that face. */
-int labial_fade_within(const labial_fade_t *fade, int most);
+/* Whether the pose that was delivered last is the neutral face. */
+int labial_fade_rests(const labial_fade_t *fade);
+
+/* How far apart the lips are in it, FAP 51 + FAP 52 downwards, FAP units. */
+int labial_fade_opening(const labial_fade_t *fade);
 
 /* That pose in whole FAP units. */
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS]);

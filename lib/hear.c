@@ -209,7 +209,7 @@ int labial_hear_end(labial_hear_t *hear)
     if (result != LABIAL_OK || hear->ended || !hear_rest(hear))
         return result;
     hear->ended = 1;
-    if (!hear->exact && !labial_fade_within(&hear->fade, 0))
+    if (!hear->exact && !labial_fade_rests(&hear->fade))
         (void)tell_way_to_rest(hear, LABIAL_EASE_FRAMES);
     return LABIAL_OK;
 }

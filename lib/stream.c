@@ -23,8 +23,8 @@
 #include "units.h"
 #include "unlocked.h"
 
-/* FAP units from the neutral face, in no channel of which lips are far from meeting. */
-#define NEAR_REST 8
+/* FAP units: lips that are no farther apart close in time by themselves. */
+#define CLOSED 16
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {
@@ -100,9 +100,14 @@ static void grow_older(uint32_t frames[LABIAL_DELAY_WORDS_])
     frames[0] <<= 1;
 }
 
+/* Whether the frame of an age is among them. */
 static int is_among(const uint32_t frames[LABIAL_DELAY_WORDS_], unsigned age)
 {
-    return (int)(frames[age / 32u] >> (age % 32u) & 1u);
+#if LABIAL_DELAY_WORDS_ > 1
+    frames += age / 32u;
+    age %= 32u;
+#endif
+    return (int)(*frames >> age & 1u);
 }
 
 /*
@@ -139,12 +144,12 @@ static void call_back(labial_t *stream, unsigned counts)
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
-/* Steps of the way to motion that begins anew with the frame that is due. Where the face is not near rest and lips meet
- * before the way's usual end, it ends with the second frame of their contact. */
-static unsigned steps_of_way(const labial_t *stream)
+/* Steps in which jaw and lips come to motion that begins anew with the frame that is due. Where lips that are apart meet
+ * before the way's end, they are there with the second frame of their contact. */
+static unsigned closing_steps(const labial_t *stream)
 {
     unsigned step, age = LABIAL_DELAY(stream->channels.stride);
-    if (labial_fade_within(&stream->fade, NEAR_REST))
+    if (labial_fade_opening(&stream->fade) <= CLOSED)
         return LABIAL_FADE_STEPS;
     for (step = 1; step < LABIAL_FADE_STEPS; step++) {
         if (is_among(stream->touches, age))
@@ -161,8 +166,10 @@ static int deliver(labial_t *stream)
     int16_t motion[LABIAL_CHANNELS];
     if (!labial_channels_due(&stream->channels, stream->models, motion))
         return 0;
-    if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride)))
-        labial_fade_begin(&stream->fade, steps_of_way(stream), !stream->resting);
+    if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride))) {
+        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
+        labial_fade_close(&stream->fade, closing_steps(stream));
+    }
     labial_fade_to(&stream->fade, motion);
     stream->pending--;
     stream->resting = stream->held = 0;
@@ -174,7 +181,7 @@ static int deliver(labial_t *stream)
 static int rest(labial_t *stream)
 {
     if (!stream->resting) {
-        if (stream->exact || labial_fade_within(&stream->fade, 0))
+        if (stream->exact || labial_fade_rests(&stream->fade))
             return 0;
         labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, 0);
         stream->resting = 1;

@@ -149,6 +149,7 @@ typedef struct {
 typedef struct {
     uint16_t step;                    /* the next one of the way; 0 when there is none */
     uint16_t length;                  /* of the way, in steps */
+    uint16_t closing;                 /* the steps after which jaw and lips are there, no more than its length */
     int16_t pose[LABIAL_CHANNELS];    /* Q4 FAP */
     int16_t earlier[LABIAL_CHANNELS]; /* the pose before it; on the way, how far `from` moves on */
     int16_t from[LABIAL_CHANNELS];    /* where the way begins */

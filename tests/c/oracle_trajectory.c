@@ -3,6 +3,7 @@
  */
 #include "oracle.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -199,20 +200,18 @@ static void solve(const stream_t *stream, size_t first, size_t count, double (*m
 /* Step j of a fade of `length`, from `held`, which moves on by `pace` / 2, / 4, ... */
 static double faded(double fresh, double held, double pace, unsigned j, unsigned length)
 {
-    const double s = (double)j / length, share = s * s * (3.0 - 2.0 * s);
+    const double s = j < length ? (double)j / length : 1.0, share = s * s * (3.0 - 2.0 * s);
     const double base = held + pace * (1.0 - 1.0 / (double)(1u << j));
     return base + (fresh - base) * share;
 }
 
-/* Steps of the fade from `held` to the solution that begins with frame `t`: until the second frame in contact, as far as
- * contacts are known when the frame is delivered, unless the face is near rest or this is no sooner. */
-static unsigned fade_length(const stream_t *stream, size_t t, const double *held)
+/* Steps in which jaw and lips fade from `held` to the solution that begins with frame `t`: until the second frame in
+ * contact, as far as contacts are known when the frame is delivered, if they are apart and this is sooner. */
+static unsigned closing_steps(const stream_t *stream, size_t t, const double *held)
 {
     const size_t known = LABIAL_DELAY(stream->models[0]->search_stride);
-    int is_near_rest = 1;
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        is_near_rest = is_near_rest && held[c] >= -136.0 && held[c] < 136.0; /* 8 FAP units, rounded */
-    for (size_t k = 0; !is_near_rest && k < FADE && k <= known && t + k < stream->count; k++) {
+    const double apart = -floor(floor(held[3] + 0.5) / 16.0 + 0.5) - floor(floor(held[4] + 0.5) / 16.0 + 0.5);
+    for (size_t k = 0; apart > 16.0 && k < FADE && k <= known && t + k < stream->count; k++) {
         if (k > 0 && stream->frames[t + k].begins)
             break;
         if (stream->contacts[t + k])
@@ -224,7 +223,7 @@ static unsigned fade_length(const stream_t *stream, size_t t, const double *held
 static void fade(const stream_t *stream, const double *pose, double (*motion)[LABIAL_CHANNELS])
 {
     double held[LABIAL_CHANNELS] = { 0 }, pace[LABIAL_CHANNELS] = { 0 };
-    unsigned j = 0, length = 0;
+    unsigned j = 0, closing = 0;
     int is_paced = 0; /* neither of the two frames before is missing, and the later one did not fade */
     for (size_t t = 0; t < stream->count; t++) {
         if (stream->frames[t].begins) {
@@ -232,13 +231,15 @@ static void fade(const stream_t *stream, const double *pose, double (*motion)[LA
                 held[c] = t > 0 ? motion[t - 1][c] : pose ? pose[c] : 0.0;
                 pace[c] = is_paced ? held[c] - motion[t - 2][c] : 0.0;
             }
-            length = fade_length(stream, t, held);
+            closing = closing_steps(stream, t, held);
             j = 1;
         }
-        for (unsigned c = 0; j > 0 && c < LABIAL_CHANNELS; c++)
-            motion[t][c] = limited(faded(motion[t][c], held[c], pace[c], j, length));
+        for (unsigned c = 0; j > 0 && c < LABIAL_CHANNELS; c++) {
+            const int closes = c == 0 || c == 3 || c == 4 || (c >= 7 && c <= 10); /* FAPs 3, 51, 52, 55 to 58 */
+            motion[t][c] = limited(faded(motion[t][c], held[c], pace[c], j, closes ? closing : FADE + 1u));
+        }
         is_paced = t > 0 && j == 0;
-        j = j > 0 && j + 1 < length ? j + 1 : 0;
+        j = j > 0 && j < FADE ? j + 1 : 0;
     }
 }
 

@@ -10,7 +10,7 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 
 from labial.files.faps import CHANNELS
-from labial.reference.fade import eased, faded, rests, way_length
+from labial.reference.fade import FADE, closing_steps, eased, faded, rests
 from labial.reference.stream import aims, gains, solution
 from labial.reference.tables import Tables
 from labial.reference.trajectory import WINDOW
@@ -75,9 +75,9 @@ def part_motion(
         moved = np.zeros(CHANNELS) if stands else motion[-1] - motion[-2]
         pose = motion[-1] if run.begin else held
         delay = limits.get("window", WINDOW) + limits.get("lag", LAG) + own.stride
-        length = way_length(pose, contact[: delay + 1].any(axis=1))
-        fresh = faded(pose, moved, fresh, length=length)
-        faded_until = run.begin + length - 1
+        closing = closing_steps(pose, contact[: delay + 1].any(axis=1))
+        fresh = faded(pose, moved, fresh, closing=closing)
+        faded_until = run.begin + FADE
         motion = np.concatenate([motion, fresh])
     return motion[: part.cancel[0]] if part.cancel else motion
 

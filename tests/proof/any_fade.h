@@ -34,9 +34,20 @@ void labial_fade_stand(labial_fade_t *fade)
     fade->step = 0;
 }
 
-int labial_fade_within(const labial_fade_t *fade, int most)
+int labial_fade_rests(const labial_fade_t *fade)
 {
-    return fade->pose[LABIAL_CHANNELS - 1] <= most && any_int;
+    return fade->pose[LABIAL_CHANNELS - 1] == 0 && any_int;
+}
+
+int labial_fade_opening(const labial_fade_t *fade)
+{
+    return fade->pose[LABIAL_CHANNELS - 1] + any_int16;
+}
+
+void labial_fade_close(labial_fade_t *fade, unsigned closing)
+{
+    /*@ assert closing <= LABIAL_FADE_STEPS; */
+    fade->closing = (uint16_t)closing;
 }
 
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])

@@ -23,12 +23,13 @@ static void any_pose(void)
     FILL(motion);
 }
 
-/* A step of a way to any motion. */
-static void fade_to_motion(int step, int length)
+/* A step of a way to any motion, on which jaw and lips arrive with step `closing`. */
+static void fade_to_motion(int step, int length, int closing)
 {
     any_pose();
     fade.step = (uint16_t)step;
     fade.length = (uint16_t)length;
+    labial_fade_close(&fade, (unsigned)closing);
     labial_fade_to(&fade, motion);
 }
 
@@ -38,7 +39,7 @@ static void fade_to_rest(int least, int most)
     any_pose();
     memset(fade.earlier, 0, sizeof fade.earlier);
     fade.step = (uint16_t)Frama_C_interval(0, most);
-    fade.length = (uint16_t)Frama_C_interval(least, most);
+    fade.length = fade.closing = (uint16_t)Frama_C_interval(least, most);
     labial_fade_to(&fade, NULL);
     any_pose();
     labial_fade_begin(&fade, (unsigned)Frama_C_interval(least, most), any_int);
@@ -46,9 +47,10 @@ static void fade_to_rest(int least, int most)
 
 int main(void)
 {
-    int i;
+    int i, closing;
     for (i = 0; i <= (int)LABIAL_FADE_STEPS; i++)
-        fade_to_motion(i, (int)LABIAL_FADE_STEPS);
+        for (closing = 2; closing <= (int)LABIAL_FADE_STEPS; closing++)
+            fade_to_motion(i, (int)LABIAL_FADE_STEPS, closing);
     /* In groups so small that EVA, which sees a step and a number of frames apart, sees how far their quotient goes. */
     /*@ loop unroll 120; */
     for (i = 1; i <= 1000; i = i + i / 16 + 1)
@@ -56,7 +58,8 @@ int main(void)
     labial_fade_frames(any_uint32, (uint32_t)Frama_C_interval(1, 255));
     any_pose();
     labial_fade_faps(&fade, faps);
-    labial_fade_within(&fade, any_int ? 8 : 0);
+    labial_fade_rests(&fade);
+    labial_fade_opening(&fade);
     labial_fade_stand(&fade);
     return 0;
 }

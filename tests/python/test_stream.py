@@ -50,22 +50,23 @@ def test_the_ways_by_hand() -> None:
         assert np.allclose(found[j - 1], 100 - 60 * (3 * s**2 - 2 * s**3))
     moving = fade.faded(held, np.full(13, 32.0), np.full((3, 13), 132.0))
     assert np.allclose(moving[0], 116 + (132 - 116) * 25 / 729) and moving[2].max() < 132
-    hurried = fade.faded(held, np.zeros(13), fresh, length=3)
-    assert np.allclose(hurried[0], 100 - 60 * 7 / 27) and np.allclose(hurried[1], 100 - 60 * 20 / 27)
-    assert np.allclose(hurried[2:], fresh[2:])
+    closed = fade.faded(held, np.zeros(13), fresh, closing=3)
+    lips = [0, 3, 4, 7, 8, 9, 10]
+    assert np.allclose(closed[0, lips], 100 - 60 * 7 / 27) and np.allclose(closed[1, lips], 100 - 60 * 20 / 27)
+    assert np.allclose(closed[2:, lips], 40) and np.allclose(closed[:, [1, 2, 5, 6, 11, 12]], found[:, :6])
     way = fade.eased(held)
     assert len(way) == 12 and not way[-1].any() and np.allclose(way[5], 50) and np.allclose(way[2], 100 * (1 - 10 / 64))
 
 
-@pytest.mark.parametrize("pose, touching, length", [
-    (8.4, [0, 1], 9), (8.6, [0, 1], 2), (-9.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9), (100.0, [8], 9),
-    (100.0, [], 9),
+@pytest.mark.parametrize("opening, touching, closing", [
+    (16.4, [0, 1], 9), (16.6, [0, 1], 2), (-90.0, [0], 9), (90.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9),
+    (100.0, [8], 9), (100.0, [], 9),
 ])
-def test_a_contact_hurries_the_way(pose: float, touching: List[int], length: int) -> None:
-    """From a face that is not at rest the motion is reached with the second frame of the first contact."""
-    held, contact = np.zeros(13), np.zeros(12, dtype=bool)
-    held[4], contact[touching] = pose, True
-    assert fade.way_length(held, contact) == length
+def test_a_contact_hurries_lips(opening: float, touching: List[int], closing: int) -> None:
+    """Lips that are apart are where the motion is with the second frame of the first contact."""
+    held, contact = np.full(13, 50.0), np.zeros(12, dtype=bool)
+    held[3], held[4], contact[touching] = 0.0, -opening, True
+    assert fade.closing_steps(held, contact) == closing
 
 
 def test_what_is_delivered_does_not_depend_on_the_parts() -> None:

@@ -7,54 +7,58 @@ from typing import Iterable, Iterator, Optional
 
 import numpy as np
 
-from labial.files.faps import CHANNELS
+from labial.files.faps import CHANNELS, FAP_NUMBERS
 
 #: Frames over which motion that begins anew fades in, unless a contact hurries it.
 FADE = 8
 #: Frames in which a face comes to rest, LABIAL_EASE_FRAMES.
 EASE = 12
-#: FAP units: a contact hurries no way that begins with a face no channel of which is farther from the neutral one.
-NEAR = 8
+#: FAP units: lips that are no farther apart close in time by themselves.
+CLOSED = 16
+#: (13,) the channels of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58.
+CLOSING = np.isin(FAP_NUMBERS, (3, 51, 52, 55, 56, 57, 58))
 
 
 def smooth(way: np.ndarray) -> np.ndarray:
-    """(T, 1) how far a transition has gone at `way` (T,), 0 .. 1: 3 s^2 - 2 s^3."""
-    result: np.ndarray = (way * way * (3.0 - 2.0 * way))[:, None]
+    """How far transitions have gone at `way`, 0 .. 1: 3 s^2 - 2 s^3."""
+    result: np.ndarray = way * way * (3.0 - 2.0 * way)
     return result
 
 
-def way_length(held: np.ndarray, contact: np.ndarray) -> int:
-    """Steps from the pose `held` (13,) to motion that begins anew, the frames of which are in contact as `contact` (T,)
-    says. Where the face is not near rest, it is there with the second frame of the first contact."""
+def closing_steps(held: np.ndarray, contact: np.ndarray) -> int:
+    """Steps in which jaw and lips come from the pose `held` (13,) to motion that begins anew, the frames of which are in
+    contact as `contact` (T,) says. Where lips that are apart meet before the way's end, they are there with the second
+    frame of their contact."""
     touching = np.flatnonzero(contact[:FADE])
-    return FADE + 1 if within(held, NEAR) or not len(touching) else int(touching[0]) + 2
+    return FADE + 1 if -rounded(held)[3:5].sum() <= CLOSED or not len(touching) else int(touching[0]) + 2
 
 
-def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, length: int = FADE + 1) -> np.ndarray:
-    """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before. The first ones fade in, in
-    `length` steps, from the pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far
-    with each frame."""
-    steps = np.arange(step + 1, step + len(fresh) + 1)
-    base = held + moved * (1.0 - 0.5 ** np.minimum(steps, FADE)[:, None])
-    result: np.ndarray = np.where(steps[:, None] >= length, fresh, base + (fresh - base) * smooth(steps / length))
+def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, closing: int = FADE + 1) -> np.ndarray:
+    """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before. The first FADE fade in from the
+    pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far with each frame; jaw and lips
+    arrive with step `closing`."""
+    steps = np.arange(step + 1, step + len(fresh) + 1)[:, None]
+    base = held + moved * (1.0 - 0.5 ** np.minimum(steps, FADE))
+    way = np.where(CLOSING, steps / closing, steps / (FADE + 1.0))
+    result: np.ndarray = np.where(way >= 1.0, fresh, base + (fresh - base) * smooth(way))
     return result
 
 
 def eased(held: np.ndarray, frames: int = EASE) -> np.ndarray:
     """(frames, 13): the way of the pose `held` (13,) to rest."""
-    result: np.ndarray = held * (1.0 - smooth(np.arange(1, frames + 1) / frames))
+    result: np.ndarray = held * (1.0 - smooth(np.arange(1, frames + 1)[:, None] / frames))
     return result
 
 
-def within(pose: np.ndarray, most: int) -> bool:
-    """Whether no channel of the pose (13,), FAP, is more than `most` units from the neutral face, as the library rounds
-    it, first to sixteenths."""
-    return bool((np.abs(np.floor((np.rint(16.0 * pose) + 8.0) / 16.0)) <= most).all())
+def rounded(pose: np.ndarray) -> np.ndarray:
+    """The pose (13,) in whole FAP units, as the library rounds it, first to sixteenths."""
+    result: np.ndarray = np.floor((np.rint(16.0 * pose) + 8.0) / 16.0)
+    return result
 
 
 def rests(pose: np.ndarray) -> bool:
     """Whether the pose (13,), FAP, is the neutral face."""
-    return within(pose, 0)
+    return not rounded(pose).any()
 
 
 def delivered_in_parts(parts: Iterable[np.ndarray], exact: bool = False) -> Iterator[np.ndarray]:

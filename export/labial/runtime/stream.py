@@ -130,8 +130,8 @@ class Stream:
 
     @alone
     def use(self, model: Model) -> None:
-        """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames, or fewer to
-        lips that meet before. Raises StreamError if its frame rate or search stride is not the stream's."""
+        """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames, that of lips
+        over fewer to a contact. Raises StreamError if its frame rate or search stride is not the stream's."""
         self._open()
         self._current = self._place(_a_model(model))
 
