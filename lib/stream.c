@@ -24,7 +24,7 @@
 #include "unlocked.h"
 
 /* FAP units: lips that are no farther apart close in time by themselves. */
-#define CLOSED 16
+#define CLOSED 24
 
 uint32_t labial_workspace_size(const labial_model_t *model)
 {

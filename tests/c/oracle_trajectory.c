@@ -211,7 +211,7 @@ static unsigned closing_steps(const stream_t *stream, size_t t, const double *he
 {
     const size_t known = LABIAL_DELAY(stream->models[0]->search_stride);
     const double apart = -floor(floor(held[3] + 0.5) / 16.0 + 0.5) - floor(floor(held[4] + 0.5) / 16.0 + 0.5);
-    for (size_t k = 0; apart > 16.0 && k < FADE && k <= known && t + k < stream->count; k++) {
+    for (size_t k = 0; apart > 24.0 && k < FADE && k <= known && t + k < stream->count; k++) {
         if (k > 0 && stream->frames[t + k].begins)
             break;
         if (stream->contacts[t + k])

@@ -59,7 +59,7 @@ def test_the_ways_by_hand() -> None:
 
 
 @pytest.mark.parametrize("opening, touching, closing", [
-    (16.4, [0, 1], 9), (16.6, [0, 1], 2), (-90.0, [0], 9), (90.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9),
+    (24.4, [0, 1], 9), (24.6, [0, 1], 2), (-90.0, [0], 9), (90.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9),
     (100.0, [8], 9), (100.0, [], 9),
 ])
 def test_a_contact_hurries_lips(opening: float, touching: List[int], closing: int) -> None:

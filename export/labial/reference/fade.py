@@ -14,7 +14,7 @@ FADE = 8
 #: Frames in which a face comes to rest, LABIAL_EASE_FRAMES.
 EASE = 12
 #: FAP units: lips that are no farther apart close in time by themselves.
-CLOSED = 16
+CLOSED = 24
 #: (13,) the channels of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58.
 CLOSING = np.isin(FAP_NUMBERS, (3, 51, 52, 55, 56, 57, 58))
 
