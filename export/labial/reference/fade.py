@@ -26,17 +26,17 @@ def smooth(way: np.ndarray) -> np.ndarray:
 
 
 def closing_steps(held: np.ndarray, contact: np.ndarray) -> int:
-    """Steps in which jaw and lips come from the pose `held` (13,) to motion that begins anew, the frames of which are in
-    contact as `contact` (T,) says. Where lips that are apart meet before the way's end, they are there with the second
-    frame of their contact."""
+    """Steps in which jaw and lips come from the pose `held` (13,) to motion that begins anew, whose frames are in contact
+    as `contact` (T,) says. Where lips that are apart meet before the way's end, they are there with the second frame of
+    their contact."""
     touching = np.flatnonzero(contact[:FADE])
     return FADE + 1 if -rounded(held)[3:5].sum() <= CLOSED or not len(touching) else int(touching[0]) + 2
 
 
 def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, closing: int = FADE + 1) -> np.ndarray:
     """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before. The first FADE fade in from the
-    pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far with each frame; jaw and lips
-    arrive with step `closing`."""
+    pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far with each frame; jaw and
+    lips arrive with step `closing`."""
     steps = np.arange(step + 1, step + len(fresh) + 1)[:, None]
     base = held + moved * (1.0 - 0.5 ** np.minimum(steps, FADE))
     way = np.where(CLOSING, steps / closing, steps / (FADE + 1.0))
