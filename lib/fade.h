@@ -3,7 +3,8 @@
  *
  * Where e is the way's step of its length, the pose is from + (aim - from) (3 e^2 - 2 e^3), and the aim itself with the
  * last step. A way to motion begins with a pose that moves: `from` goes on as far as the last frame moved it, half as
- * far with each frame. A way to rest begins with a pose that stands still, so that it never leads away from rest.
+ * far with each frame; jaw and lips may arrive sooner than the rest. A way to rest begins with a pose that stands still,
+ * so that it never leads away from rest.
  */
 #ifndef LABIAL_FADE_H
 #define LABIAL_FADE_H

@@ -119,7 +119,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 /*
  * Selects `model`, speech or laughter, for the phonemes of the next pushes. Each model treats the other's phonemes as
  * silence; where the stream changes from one to the other, the motion fades over 8 frames; jaw and lips that are apart
- * over fewer to a p, b, m, f or v that comes before, so that they meet in it. The model is trusted like that of labial_init().
+ * over fewer to a p, b, m, f or v that comes before, so that they meet in it. The model is trusted like that of
+ * labial_init().
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
  * LABIAL_ERROR_FRAME_RATE (frames per second and search stride are those of the stream's first model), LABIAL_ERROR_WORKSPACE
@@ -184,8 +185,8 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds);
 
 /*
  * Continues a stream that has ended or was cancelled: phonemes can be pushed again, frame numbers continue, and the
- * first 8 frames lead from the last delivered face to the motion, as in labial_use(), so that there is no jump.
- * The current model stays. A face that is still on its way to rest goes on while the first frame is missing.
+ * first 8 frames lead from the last delivered face to the motion, as in labial_use(), so that there is no jump. The
+ * current model stays. A face that is still on its way to rest goes on while the first frame is missing.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (before labial_init(), before labial_end() or
  * labial_cancel(), or while frames of phonemes are still to come).
