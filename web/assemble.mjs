@@ -10,8 +10,9 @@
 //     node assemble.mjs manifest FOLDER PACKAGES NAME VERSION   package.json, and index.d.ts where PACKAGES has it
 import { readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
-import { constants, deflateRawSync, inflateRawSync } from "node:zlib";
+import { constants, deflateRawSync } from "node:zlib";
 import { binary } from "./layout.mjs";
+import { unpack } from "./unpack.js";
 
 const read = (path) => readFileSync(path, "utf8");
 
@@ -72,11 +73,11 @@ function deflated(bytes) {
     return Buffer.concat(best[steps].parts);
 }
 
-/** The input of unpack() in memory.js. Bundlers keep a notice that begins with an exclamation mark. */
+/** The input of unpack.js. Bundlers keep a notice that begins with an exclamation mark. */
 function packed(file, bytes, notice) {
-    const stream = deflated(bytes);
-    if (!inflateRawSync(stream).equals(Buffer.from(bytes))) throw new Error(`${file}: not what was packed`);
-    writeFileSync(file, `/*! ${notice} */\nexport default "${stream.toString("base64")}";\n`);
+    const text = deflated(bytes).toString("base64");
+    if (!Buffer.from(unpack(text)).equals(Buffer.from(bytes))) throw new Error(`${file}: not what was packed`);
+    writeFileSync(file, `/*! ${notice} */\nexport default "${text}";\n`);
 }
 
 function table(file, json) {

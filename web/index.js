@@ -1,7 +1,8 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown, unpack } from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
+import { unpack } from "./unpack.js";
 import * as timings from "./services.js";
 import speech from "./speech.js";
 
@@ -84,7 +85,7 @@ export class Labial {
 
     static async load(options = {}) {
         const { wasm, laughter } = options;
-        const code = (await wasm) ?? (await unpack(speech));
+        const code = (await wasm) ?? unpack(speech);
         const made = await allowed(WebAssembly.instantiate(code, {}));
         const labial = new Labial(made.instance ?? made, options);
         if (laughter && typeof laughter !== "function") await labial.laughter();
@@ -263,7 +264,7 @@ export class Labial {
     async #fetch() {
         try {
             const data = await given(this.#laughter, NO_LAUGHTER);
-            const model = this.model(typeof data === "string" ? await unpack(data) : data);
+            const model = this.model(typeof data === "string" ? unpack(data) : data);
             if (model.names !== this.wasm.bundled_names(1)) throw new LabialError("the laughter is the model of something else");
             return model;
         } finally {

@@ -23,17 +23,6 @@ export class LabialError extends Error {
     }
 }
 
-/** The bytes of a text: base64 of a raw deflate stream (RFC 1951). */
-export async function unpack(text) {
-    try {
-        const bytes = Uint8Array.from(atob(text), (digit) => digit.charCodeAt(0));
-        const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
-        return new Uint8Array(await new Response(stream).arrayBuffer());
-    } catch (error) {
-        throw new LabialError(`what was packed is damaged: ${error.message}`);
-    }
-}
-
 /** What is compiled or instantiated, or a LabialError that names what the page's policy lacks. */
 export async function allowed(made) {
     try {

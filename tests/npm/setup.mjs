@@ -2,7 +2,6 @@
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { inflateRawSync } from "node:zlib";
 import { binary as blob } from "../../web/layout.mjs";
 
 /** The folder of the package, which the build names. */
@@ -11,7 +10,7 @@ export const folder = resolve(process.env.LABIAL_NPM_PACKAGE ?? "build/wasm/npm"
 export const { Labial, LabialError, timings } = await import(pathToFileURL(`${folder}/index.js`));
 /** The laughter model, from the package beside it. */
 export const { default: laughter } = await import(pathToFileURL(`${folder}-laughter/index.js`));
-export const { unpack } = await import(pathToFileURL(`${folder}/memory.js`));
+export const { unpack } = await import(pathToFileURL(`${folder}/unpack.js`));
 export { crc32 } from "../../web/layout.mjs";
 
 /** The repository's file of this path. */
@@ -64,6 +63,6 @@ export function difference(found, wanted) {
 
 /** A model of the library as a binary one. */
 export function binary(mouth, model) {
-    if (model === mouth.models.laughter) return inflateRawSync(Buffer.from(laughter, "base64"));
+    if (model === mouth.models.laughter) return unpack(laughter);
     return blob(mouth.memory.bytes.buffer, model.at);
 }

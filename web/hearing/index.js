@@ -35,7 +35,7 @@ async function module({ LabialError, shown, unpack }, model) {
     let text = await (typeof model === "function" ? model() : model);
     while (text?.default) text = text.default; // a module, or one inside another as CommonJS has it
     if (typeof text !== "string") throw new LabialError(`${shown(text)} is no model of hearing`);
-    if (!compiled.has(text)) compiled.set(text, unpack(text).then((bytes) => WebAssembly.compile(bytes)));
+    if (!compiled.has(text)) compiled.set(text, WebAssembly.compile(unpack(text)));
     return compiled.get(text).catch((error) => {
         compiled.delete(text); // so that it can be tried again
         throw error;

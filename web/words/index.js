@@ -20,7 +20,7 @@ export async function words(tools, labial) {
 }
 
 async function started(tools, labial) {
-    compiled ??= tools.allowed(tools.unpack(english).then((bytes) => WebAssembly.compile(bytes))).catch((error) => {
+    compiled ??= tools.allowed(WebAssembly.compile(tools.unpack(english))).catch((error) => {
         compiled = undefined;
         throw error;
     });
