@@ -10,22 +10,19 @@ needs numpy, the exporter with its extra `fit`, and the run-time on the path.
 from __future__ import annotations
 
 import sys
-import tempfile
-from pathlib import Path
 from typing import Dict, List, Mapping, Sequence
 
 import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
-from labial.fit.fit import fit, output_name
+from labial.fit.fit import fit, output_names
 from labial.fit.head import Head, read_table
 from labial.fit.kinds import KINDS, kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import judge, matrix, opening
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
-from labial.rig.description import read
 
 #: Shapes that a head needs for a built-in rig.
 _LEAST = {"arkit": 4, "oculus": 8, "vrm": 3}
@@ -69,11 +66,8 @@ def rows(path: str, motion: Motion) -> List[str]:
     head = read_table(path) if path.endswith(".csv") else read_head(read_avatar(path), path, {}).head
     found = [row(f"{kind} {head.name}", head, weights, motion) for kind in KINDS
              for weights in [built_in(head, kind, motion)] if weights]
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "fitted.toml"
-        place.write_text(fit([path], {}, None, "fitted").text, encoding="utf-8")
-        values = outputs(read(place, "fitted"), motion.frames)
-    own = {shape: values[output_name(shape)] for shape in head.shapes if output_name(shape) in values}
+    values = outputs(fit([path], {}, None, "fitted").rig, motion.frames)
+    own = {shape: values[name] for shape, name in output_names(head.shapes).items() if name in values}
     return [*found, row(f"fitted {head.name} ({kind_of(head)})", head, own, motion)]
 
 

@@ -144,8 +144,8 @@ static void call_back(labial_t *stream, unsigned counts)
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
-/* Steps in which jaw and lips come to motion that begins anew with the frame that is due. Where lips that are apart meet
- * before the way's end, they are there with the second frame of their contact. */
+/* Steps in which jaw and lips reach motion that begins anew with the frame that is due: where lips that are apart must
+ * meet before the way's end, as many as lead to the second frame of their contact. */
 static unsigned closing_steps(const labial_t *stream)
 {
     unsigned step, age = LABIAL_DELAY(stream->channels.stride);

@@ -1,5 +1,5 @@
-// Decodes bytes in a script: base64 of a raw deflate stream (RFC 1951). Neither atob() nor DecompressionStream is available
-// everywhere: an AudioWorklet lacks both.
+// Decodes bytes in a script: base64 of a raw deflate stream (RFC 1951). Neither atob() nor DecompressionStream is
+// available everywhere: an AudioWorklet lacks both.
 import { LabialError } from "./memory.js";
 
 const DIGITS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -14,8 +14,8 @@
 
 /* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the
  * motion smoother and costs a frame of delay and 8 bytes of workspace in each channel. With the bundled models 3 frames leave an
- * error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more. With a delay
- * beyond LABIAL_REACH, labial_visemes() knows no sounds. */
+ * error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more.
+ * Where the delay is longer than LABIAL_REACH, all frames of labial_visemes() are silence. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 3
 #endif

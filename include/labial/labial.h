@@ -118,8 +118,8 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 
 /*
  * Selects `model`, speech or laughter, for the phonemes of the next pushes. Each model treats the other's phonemes as
- * silence; where the stream changes from one to the other, the motion fades over 8 frames; jaw and lips that are apart
- * over fewer to a p, b, m, f or v that comes before, so that they meet in it. The model is trusted like that of
+ * silence; where the stream changes from one to the other, the motion fades over 8 frames. Where a p, b, m, f or v
+ * comes before the end of that, lips that are apart reach it sooner, with the jaw, so that they meet. The model is trusted like that of
  * labial_init().
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
@@ -11,7 +10,7 @@ import numpy as np
 from labial.bake.source import RATE
 from labial.errors import DataError
 from labial.files.c import rows, written_by
-from labial.files.frames import spans
+from labial.files.frames import spans, whole_faps
 from labial.rig.description import Output, Rig
 from labial.rig.gestures import GESTURES
 from labial.rig.table import TableOutput
@@ -44,8 +43,7 @@ def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> np.n
         if output.maximum - output.minimum > SPAN_MAX:
             raise DataError(rig.path, None, f"output.{output.name}.maximum: more than {SPAN_MAX} {rig.unit.text} above "
                             "the minimum, too far apart for bytes")
-    whole = array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
-    values = np.array(Face.of(rig).play(whole, 65535), dtype=np.int64).reshape(len(frames), len(table))
+    values = np.array(Face.of(rig).play(whole_faps(frames), 65535), dtype=np.int64).reshape(len(frames), len(table))
     low = np.array([output.minimum for output in table])
     span = np.array([max(output.maximum - output.minimum, 1) for output in table])
     result: np.ndarray = ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)

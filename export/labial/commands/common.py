@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from array import array
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
@@ -87,10 +86,12 @@ class Limited:
         ahead as far as the last of them; outputs that follow sounds do not."""
         import numpy as np
 
+        from labial.files.frames import whole_faps
+
         if first == 0:  # another motion
             self._ahead.rest()
             self._shown.rest()
-        faps = array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
+        faps = whole_faps(frames)
         found = np.array(self._ahead.play(faps, 65535), dtype=np.float64) / self._unit.scale
         found = found.reshape(len(frames), len(self._ahead.outputs))
         if self._follow and shares is not None:

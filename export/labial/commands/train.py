@@ -9,7 +9,7 @@ import warnings
 from typing import TYPE_CHECKING, Any, Dict, Sequence
 
 from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
-from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
+from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError, needs
 from labial.files.arguments import positive, seed, whole
 
@@ -21,10 +21,9 @@ LEAST, FEW = 15, 120
 #: The same of what a model is adapted to: what is learnt is less, the less there is.
 LEAST_OF_TALKER, FEW_OF_TALKER = 5, 30
 
-#: The options that ``--adapt`` does not use, and what they are unless they are given.
-_OF_TRAINING = {"kind": KINDS[0], "method": METHODS[-1], "fps": FPS, "codebook": None, "components": None,
-                "look_ahead": None, "search_stride": None, "talker_variance": None, "asymmetric": False,
-                "normalise": False, "seed": 0, "engine": None}
+#: The options that ``--adapt`` does not use.
+_OF_TRAINING = ("kind", "method", "fps", "codebook", "components", "look_ahead", "search_stride", "talker_variance",
+                "asymmetric", "normalise", "seed", "engine")
 
 
 def add_train(command: argparse.ArgumentParser) -> None:
@@ -111,7 +110,9 @@ def _adapt(options: argparse.Namespace) -> int:
     from labial.tables.model import load, save
     from labial.train import adapted
 
-    ignored = [name for name, usual in _OF_TRAINING.items() if getattr(options, name) != usual]
+    usual = argparse.ArgumentParser()
+    add_train(usual)
+    ignored = [name for name in _OF_TRAINING if getattr(options, name) != usual.get_default(name)]
     if ignored:
         names = " and ".join("--" + name.replace("_", "-") for name in ignored)
         warnings.warn(f"{names}: of no effect with --adapt", stacklevel=1)

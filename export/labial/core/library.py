@@ -50,6 +50,8 @@ ARTICULATION_MAX = 200
 VISEMES = 15
 #: LABIAL_LAUGH_FULL.
 LAUGH_FULL = 256
+#: How a binary model begins (include/labial/blob.h).
+BLOB_MAGIC = b"LBM1"
 
 
 #: The types of flat/CMakeLists.txt, which makes the library's list of its functions.

@@ -13,6 +13,8 @@ import os
 import re
 import warnings
 from dataclasses import dataclass, field
+from io import StringIO
+from itertools import islice
 from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.core import lines
@@ -60,7 +62,7 @@ def read_segments(path: PathLike, form: str = AUTO, tier: Optional[str] = None, 
     try:
         for item in lines.timings(text.encode("utf-8"), form, tier, number):
             if not segments:
-                name = next(iter(_TIER.findall("\n".join(text.split("\n")[: item.line]))[-1:]), "")
+                name = next(iter(_TIER.findall("".join(islice(StringIO(text), item.line)))[-1:]), "")
             segments.append(SourceSegment(item.start, item.end, item.label, item.apex, item.word, item.line,
                                           "xsampa" if item.xsampa else AUTO, name))
     except lines.Malformed as error:

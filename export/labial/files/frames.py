@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from typing import List, TextIO, Tuple
 
 import numpy as np
@@ -32,6 +33,11 @@ def write_csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: float, star
     """The lines of :func:`write_csv` of frames that begin with number `first`."""
     for t, frame in enumerate(frames, first):
         out.write(f"{start + t / fps:.3f}," + ",".join(f"{value:.2f}" for value in frame) + "\n")
+
+
+def whole_faps(frames: np.ndarray) -> array[int]:
+    """Frames (T, 13) in whole FAP units as the library takes them: 13 T numbers of 16 bits."""
+    return array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
 
 
 def opening(frames: np.ndarray) -> np.ndarray:

@@ -26,8 +26,8 @@ def smooth(way: np.ndarray) -> np.ndarray:
 
 
 def closing_steps(held: np.ndarray, contact: np.ndarray) -> int:
-    """Steps in which jaw and lips come from the pose `held` (13,) to motion that begins anew, whose frames are in
-    contact as `contact` (T,) says. Where lips that are apart meet before the way's end, they are there with the second
+    """Steps in which jaw and lips go from the pose `held` (13,) to motion that begins anew, whose frames are in contact
+    as `contact` (T,) says: where lips that are apart must meet before the way's end, as many as lead to the second
     frame of their contact."""
     touching = np.flatnonzero(contact[:FADE])
     return FADE + 1 if -rounded(held)[3:5].sum() <= CLOSED or not len(touching) else int(touching[0]) + 2

@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any, List, Optional, Tuple, Union
 
 from labial.core.library import (
+    BLOB_MAGIC,
     ERROR_NAME,
     ERROR_PHONEME,
     OK,
@@ -25,8 +26,8 @@ from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
 LABELS = {"auto": sum(LABEL_SETS.values()), **LABEL_SETS}
-#: How a ``.npz`` and a ``.lbm`` begin.
-_NPZ, _LBM = b"PK\x03\x04", b"LBM1"
+#: How a ``.npz`` begins.
+_NPZ = b"PK\x03\x04"
 
 
 class Model:
@@ -63,7 +64,7 @@ class Model:
         if content.startswith(_NPZ):
             raise ModelError(f"{self.name}: a model that training wrote; labial export {self.name} --name NAME --blob "
                              "-o DIR makes the NAME.lbm of it that this call reads")
-        if not content.startswith(_LBM):
+        if not content.startswith(BLOB_MAGIC):
             raise ModelError(f"{self.name}: not a model that labial export --blob wrote (.lbm)")
         # The library uses the tables in place: this object keeps both blocks alive.
         self._content = memory(len(content))

@@ -13,6 +13,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from labial.core.library import BLOB_MAGIC
 from labial.errors import ModelError
 from labial.tables.followers import FROM_CORNERS, IN_TABLES, VALUES, columns
 from labial.tables.quantise import FORMAT, ExportedModel
@@ -195,4 +196,4 @@ def blob(model: ExportedModel) -> bytes:
     body = head + _packed(shared_tables(model))
     for k in range(len(model.centre)):
         body += struct.pack(f"<{CHANNEL_SCALARS}B", *channel_scalars(model, k), 0) + _packed(channel_tables(model, k))
-    return b"LBM1" + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body
+    return BLOB_MAGIC + struct.pack("<II", 12 + len(body), zlib.crc32(body)) + body

@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, Dict, Tuple, Union
 
 import numpy as np
 
+from labial.core.library import BLOB_MAGIC
 from labial.defaults import KINDS, METHODS
 from labial.errors import ModelError, expect
 from labial.files import limits
@@ -252,7 +253,7 @@ def load(path: Union[str, os.PathLike[str]]) -> Model:
         raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
     except ArrayError as error:
         with open(path, "rb") as file:
-            blob = file.read(4) == b"LBM1"
+            blob = file.read(len(BLOB_MAGIC)) == BLOB_MAGIC
         why = "exported for the library; name the .npz that it was made of" if blob else f"not a labial model: {error}"
         raise ModelError(f"{os.fspath(path)}: {why}") from None
     except ModelError as error:
