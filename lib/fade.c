@@ -7,9 +7,6 @@
 
 #include "fixed.h"
 
-/* Channels of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58. */
-#define CLOSING 0x799u
-
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
 {
     uint32_t frames;
@@ -55,7 +52,7 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
     closed = step < fade->closing ? labial_ease(step, fade->closing) : (int32_t)1 << 14;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
-        const int32_t own = CLOSING >> k & 1u ? closed : share;
+        const int32_t own = LABIAL_FADE_CLOSING >> k & 1u ? closed : share;
         fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * own + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);

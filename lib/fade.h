@@ -16,6 +16,14 @@
 /* Steps of a way to motion that begins anew: the motion itself is reached with the last one. */
 #define LABIAL_FADE_STEPS 9u
 
+/* Channels that meet in time for a contact, those of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58. */
+#define LABIAL_FADE_CLOSING 0x799u
+
+/* Steps in which these reach motion that begins anew with the frame of `age` in `stream`, on a way of `length` steps from
+ * lips that are `opening` FAP units apart: where lips that are apart must meet before the way's end, as many as lead to the
+ * second frame of their contact (stream.c). */
+unsigned labial_fade_closing(const labial_t *stream, unsigned age, unsigned length, int opening);
+
 /* Frames of a cancel over `milliseconds` (labial/result.h). */
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
 

@@ -144,20 +144,18 @@ static void call_back(labial_t *stream, unsigned counts)
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
 
-/* Steps in which jaw and lips reach motion that begins anew with the frame that is due: where lips that are apart must
- * meet before the way's end, as many as lead to the second frame of their contact. */
-static unsigned closing_steps(const labial_t *stream)
+unsigned labial_fade_closing(const labial_t *stream, unsigned age, unsigned length, int opening)
 {
-    unsigned step, age = LABIAL_DELAY(stream->channels.stride);
-    if (labial_fade_opening(&stream->fade) <= CLOSED)
-        return LABIAL_FADE_STEPS;
-    for (step = 1; step < LABIAL_FADE_STEPS; step++) {
+    unsigned step;
+    if (opening <= CLOSED)
+        return length;
+    for (step = 1; step < length; step++) {
         if (is_among(stream->touches, age))
             return step + 1u;
         if (age-- == 0 || is_among(stream->begins, age))
             break;
     }
-    return LABIAL_FADE_STEPS;
+    return length;
 }
 
 /* Makes the frame that is due the pose to deliver; returns whether one is due. */
@@ -168,7 +166,8 @@ static int deliver(labial_t *stream)
         return 0;
     if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride))) {
         labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
-        labial_fade_close(&stream->fade, closing_steps(stream));
+        labial_fade_close(&stream->fade, labial_fade_closing(stream, LABIAL_DELAY(stream->channels.stride),
+                                                             LABIAL_FADE_STEPS, labial_fade_opening(&stream->fade)));
     }
     labial_fade_to(&stream->fade, motion);
     stream->pending--;

@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "fade.h"
 #include "fixed.h"
 
 #define GIVEN_MOST LABIAL_VOICE_GIVEN_
@@ -151,6 +152,8 @@ static void renew_stream(labial_voice_t *voice, uint32_t second)
     for (; frame < voice->next; frame++)
         make_frame(voice, frame);
     labial_voice_begin_fade(voice, LABIAL_VOICE_FADE);
+    voice->closing = labial_fade_closing(&voice->stream, LABIAL_DELAY((unsigned)voice->model->search_stride) - 1u,
+                                         LABIAL_VOICE_FADE, -(voice->shown[3] + voice->shown[4]));
 }
 
 /* Looks whether the stream has what it should have, and if not makes a new one. */
@@ -176,20 +179,23 @@ void labial_voice_begin_fade(labial_voice_t *voice, uint32_t steps)
     for (k = 0; k < LABIAL_CHANNELS; k++)
         voice->fade[k] = voice->begun ? voice->shown[k] - voice->made[k] : 0;
     voice->step = 0;
-    voice->steps = steps;
+    voice->steps = voice->closing = steps;
 }
 
 /* Shows what the stream made, on the way there. */
 static void show_frame(labial_voice_t *voice)
 {
-    int32_t left = 0;
+    int32_t left = 0, lips = 0; /* what is left of the fade, and of that of jaw and lips */
     unsigned k;
     if (voice->step < voice->steps) {
         voice->step++;
         left = left_at(voice->step, voice->steps);
+        lips = voice->step < voice->closing ? left_at(voice->step, voice->closing) : 0;
     }
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        voice->shown[k] = (int16_t)labial_clamp(voice->made[k] + ((voice->fade[k] * left + 8192) >> 14), INT16_MAX);
+    for (k = 0; k < LABIAL_CHANNELS; k++) {
+        const int32_t own = LABIAL_FADE_CLOSING >> k & 1u ? lips : left;
+        voice->shown[k] = (int16_t)labial_clamp(voice->made[k] + ((voice->fade[k] * own + 8192) >> 14), INT16_MAX);
+    }
     voice->begun = 1;
 }
 

@@ -16,7 +16,8 @@
  *         show(faps);
  *
  * Frame k is due when k / fps seconds of the sound were heard. What becomes known late, or otherwise than before,
- * changes the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been.
+ * changes the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been;
+ * lips that are apart meet in time for a p, b or m.
  *
  * Utterances
  * - Times of items count from the beginning of their utterance. The first one begins with the sound; further ones begin
@@ -333,10 +334,10 @@ struct labial_voice {
     int (*speak)(labial_voice_t *voice); /* voice_words.c, once it is needed */
     uint32_t (*lasts)(labial_voice_t *voice, const struct labial_voice_utterance *); /* and what a last word does */
     struct labial_voice_place *items;
-    uint32_t room; /* places */
-    uint32_t used; /* up to this place */
-    uint32_t next; /* the frame that comes next */
-    uint32_t step, steps;
+    uint32_t room;                       /* places */
+    uint32_t used;                       /* up to this place */
+    uint32_t next;                       /* the frame that comes next */
+    uint32_t step, steps, closing;       /* of a fade, which jaw and lips end with step `closing` */
     int32_t offset;                      /* milliseconds */
     uint64_t left;                       /* milliseconds of the last segment that the stream was not given yet */
     int64_t tail;                        /* when the silence without an end begins; INT64_MAX before it is given */

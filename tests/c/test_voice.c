@@ -990,6 +990,29 @@ TEST_AFTER(begin_frames, what_is_told_late_fades_in)
     assert_memory_equal(shown[116], wanted[116], 5 * sizeof *shown);
 }
 
+/* How far apart the lips are in a frame that was shown. */
+static int opening(unsigned frame)
+{
+    return -(shown[frame][3] + shown[frame][4]);
+}
+
+TEST_AFTER(begin_frames, lips_meet_for_a_contact_that_is_told_when_it_begins)
+{
+    int before, least = 1000;
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 100, 600), LABIAL_OK);
+    show_until(580);
+    before = opening(29);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_B, 600, 660), LABIAL_OK);
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 660, 900), LABIAL_OK);
+    show_until(900);
+    for (unsigned i = 30; i < 34; i++)
+        least = opening(i) < least ? opening(i) : least;
+    assert_in_range(before, 150, 450);
+    assert_in_range(20 + least, 0, 50);
+    assert_true(opening(30) > 80); /* not at once */
+    assert_true(opening(40) > 150);
+}
+
 TEST_AFTER(begin_frames, a_change_and_its_opposite_are_none)
 {
     tell_sentence(0, SENTENCE);

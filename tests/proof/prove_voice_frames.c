@@ -37,6 +37,12 @@ int labial_tick(labial_t *stream)
     return any_int;
 }
 
+unsigned labial_fade_closing(const labial_t *stream, unsigned age, unsigned length, int opening)
+{
+    /*@ assert age < LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) && opening >= -65536; */
+    return stream->held ? length : (unsigned)Frama_C_interval(1, (int)length);
+}
+
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
 {
     /*@ assert milliseconds <= 3600000; */
@@ -96,6 +102,7 @@ static void any_state(void)
     voice.next = any_uint32;
     voice.step = (uint32_t)Frama_C_interval(0, LABIAL_CANCEL_MAX);
     voice.steps = (uint32_t)Frama_C_interval(0, LABIAL_CANCEL_MAX);
+    voice.closing = (uint32_t)Frama_C_interval(0, LABIAL_CANCEL_MAX);
     voice.left = (uint64_t)any_uint32 << 32 | any_uint32;
     voice.tail = any_moment();
     voice.from = (int64_t)any_uint32 * 8;

@@ -86,6 +86,24 @@ def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
         assert found[0].filename == __file__
 
 
+@pytest.mark.parametrize("lead", [0.0, 0.02, 0.2])
+def test_lips_close_in_words_that_are_told_when_they_begin(lead: float) -> None:
+    """Wherever they do where all words are known: at most so far apart, within 80 ms of the same moment."""
+    words = [(word, 0.1 + 0.3 * k, 0.4 + 0.3 * k) for k, word in enumerate("my mum bought a map but Bob may pay".split())]
+    with labial.Voice() as known, labial.Voice() as told:
+        for word in words:
+            known.say(*word)
+        wanted = [-sum(faps[3:5]) for faps in played(known, 0, 3.0)]
+        shown: List[int] = []
+        for word in words:
+            shown += [-sum(faps[3:5]) for faps in played(told, len(shown) / 50, word[1] - lead)]
+            told.say(*word)
+        shown += [-sum(faps[3:5]) for faps in played(told, len(shown) / 50, 3.0)]
+    closed = [k for k, opening in enumerate(wanted) if opening <= 24 and 5 < k < 135]
+    assert len(closed) > 20
+    assert all(min(shown[k - 4 : k + 5]) <= 50 for k in closed)
+
+
 @pytest.mark.parametrize("begins", [False, True])
 def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
     """An interrupted sound stops, and its clock with it; what is told for the next answer waits for its sound."""

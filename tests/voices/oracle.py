@@ -16,13 +16,23 @@ from array import array
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
+import numpy as np
+
 import labial
+from labial.reference.stream import aims
+from labial.reference.tables import ExportedTables
+from labial.tables.model import load
+from labial.tables.quantise import quantise
 
 #: Milliseconds of the silence after all that is known.
 ENDLESS = 3_600_000
 #: Frames of it that a session may see.
 SILENT = 1000
 FADE = 8
+#: Frames that a stream has taken in ahead of the one that it delivered last.
+KNOWN = 6
+#: FAP units that lips are apart, so that they must meet for a contact before a fade's end; channels of jaw and lips.
+APART, CLOSING = 24, (0, 3, 4, 7, 8, 9, 10)
 #: Milliseconds from the end of all that is known until the face begins to ease to rest, and until it is there.
 STILL, REST = 200, 500
 
@@ -68,7 +78,7 @@ class Oracle:
         self.finished = self.cancelled = False
         self.neutral, self.epoch, self.plan = False, -1, []  # the stream: since when, of what
         self.next, self.shown = 0, None
-        self.fade: Tuple[Faps, int, int] = ((0,) * 13, 0, 0)
+        self.fade: Tuple[Faps, int, int, int] = ((0,) * 13, 0, 0, 0)
         self.changed = True
 
     def run(self, step: List[Any]) -> Optional[List[Shown]]:
@@ -117,7 +127,7 @@ class Oracle:
         self.utterances, self.cancelled, self.finished = [], True, False
         self.neutral = True
         frames = max(1, math.ceil(milliseconds / 20 - 1e-6))
-        self.fade = (self.shown or (0,) * 13, 0, frames)
+        self.fade = (self.shown or (0,) * 13, 0, frames, frames)
 
     def listens(self) -> bool:
         if self.finished and not self.cancelled:
@@ -195,12 +205,13 @@ class Oracle:
         found = []
         while self.next <= due:
             base = (0,) * 13 if self.neutral else rested(self.plan, self.next)
-            offset, step, steps = self.fade
+            offset, step, steps, closing = self.fade
             if step < steps:
                 step += 1
-                left = 16384 - eased(step, steps)
-                base = tuple(one + ((more * left + 8192) >> 14) for one, more in zip(base, offset))
-                self.fade = (offset, step, steps)
+                left = [16384 - eased(min(step, end), end) for end in (closing if k in CLOSING else steps
+                                                                      for k in range(13))]
+                base = tuple(one + ((more * part + 8192) >> 14) for one, more, part in zip(base, offset, left))
+                self.fade = (offset, step, steps, closing)
             found.append(Shown(self.next, base))
             self.shown = base
             self.next += 1
@@ -222,7 +233,9 @@ class Oracle:
         self.epoch, self.plan, self.neutral = start, plan, False
         if self.shown is not None:
             before = rested(plan, self.next - 1)
-            self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE)
+            touching = [k for k, touches in enumerate(contacts(plan, self.next)) if touches]
+            closing = touching[0] + 2 if touching and -sum(self.shown[3:5]) > APART else FADE
+            self.fade = (tuple(one - other for one, other in zip(self.shown, before)), 0, FADE, closing)
 
 
 def _utterance(origin: int, queued: bool) -> Dict[str, Any]:
@@ -265,6 +278,21 @@ def _motion(plan: Tuple[Tuple[int, float, str], ...]) -> List[Faps]:
         for phoneme, length in _timings(list(plan)):
             stream.push(phoneme, length)
         return [item.faps for item in itertools.islice(stream, count)]
+
+
+@functools.lru_cache(maxsize=1)
+def _tables() -> ExportedTables:
+    """The bundled voice's."""
+    models = Path(__file__).parents[2] / "export" / "models"
+    return ExportedTables(quantise(load(str(models / "speech_en.npz")), "speech_en"))
+
+
+def contacts(plan: Plan, number: int) -> List[bool]:
+    """Whether lips or lip and teeth touch, in each frame from this one of a plan on that a stream has taken in."""
+    phonemes = [(labial.speech_en.number(label), round(min(length, SILENT * 20))) for label, length in _timings(plan)]
+    _, contact, _ = aims(_tables(), phonemes)
+    first = number - plan[0][0] // 20
+    return [bool(touches) for touches in np.any(contact[first : first + KNOWN], axis=1)]
 
 
 def needed(plan: Plan, number: int) -> int:
