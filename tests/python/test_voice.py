@@ -89,7 +89,8 @@ def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
 @pytest.mark.parametrize("lead", [0.0, 0.02, 0.2])
 def test_lips_close_in_words_that_are_told_when_they_begin(lead: float) -> None:
     """Wherever they do where all words are known: at most so far apart, within 80 ms of the same moment."""
-    words = [(word, 0.1 + 0.3 * k, 0.4 + 0.3 * k) for k, word in enumerate("my mum bought a map but Bob may pay".split())]
+    texts = "my mum bought a map but Bob may pay".split()
+    words = [(word, 0.1 + 0.3 * k, 0.4 + 0.3 * k) for k, word in enumerate(texts)]
     with labial.Voice() as known, labial.Voice() as told:
         for word in words:
             known.say(*word)
