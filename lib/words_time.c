@@ -30,8 +30,8 @@
  * consonants - the first, the last, after another, before another, behind the last vowel before a pause, between
  * vowels. */
 #define FACTORS 8u
-static const uint16_t vowel_factors[FACTORS] = { 276, 241, 264, 276, 271, 279, 261, 340 };
-static const uint16_t consonant_factors[FACTORS] = { 300, 261, 225, 243, 353, 279, 256, 256 };
+static const uint16_t vowel_factors[FACTORS] = { 269, 271, 259, 259, 259, 300, 259, 415 };
+static const uint16_t consonant_factors[FACTORS] = { 302, 266, 218, 251, 410, 294, 256, 256 };
 
 /* ---- Weights ---------------------------------------------------------------------------------------------------- */
 
@@ -187,6 +187,31 @@ static uint32_t shifted(const labial_words_t *stream, uint32_t time)
     return moved < 0 ? 0u : moved > 0xffffffff ? 0xffffffffu : (uint32_t)moved;
 }
 
+/* Whether a text ends in punctuation behind which voices pause; quotes and brackets may follow it. */
+static int ends_in_punctuation(const char *text, size_t size)
+{
+    while (size > 0u) {
+        switch (text[--size]) {
+        case '"':
+        case '\'':
+        case ')':
+        case ']':
+        case ' ':
+            break;
+        case ',':
+        case '.':
+        case ';':
+        case ':':
+        case '?':
+        case '!':
+            return 1;
+        default:
+            return 0;
+        }
+    }
+    return 0;
+}
+
 /* Begins with the word that waits, up to `limit`, where the next one begins. */
 static void speak(labial_words_t *stream, uint32_t limit)
 {
@@ -198,7 +223,7 @@ static void speak(labial_words_t *stream, uint32_t limit)
         const uint32_t usual = word->kind == LABIAL_WORDS_READ ? labial_words_length(stream->model, word) : 2u * FILLER;
         end = room <= usual / 4u * STRETCHED ? limit : span->start + usual;
     }
-    if (end > limit || limit - end < LABIAL_WORDS_PAUSE)
+    if (end > limit || limit - end < (span->stops ? LABIAL_WORDS_COMMA : LABIAL_WORDS_PAUSE))
         end = limit;
     stream->holding = 0;
     stream->held ^= 1u;
@@ -254,6 +279,7 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         before->word.count = (uint8_t)left;
     }
     if (span->word.kind == LABIAL_WORDS_SILENT) {
+        before->stops |= (uint8_t)ends_in_punctuation(text, size);
         if (stream->holding && before->open && start > before->start) {
             before->end = start;
             before->open = 0;
@@ -263,6 +289,7 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
     span->end = end;
     span->open = end == LABIAL_WORDS_NO_END;
     span->spelt = 0;
+    span->stops = (uint8_t)ends_in_punctuation(text, size);
     if (ends && !are_equal(start, ends, count)) {
         span->spelt = 1;
         reach_characters(stream->model, span, ends);

@@ -50,8 +50,10 @@ extern "C" {
 #define LABIAL_WORDS_CHARACTERS 255
 #define LABIAL_WORDS_PHONEMES 96
 
-/* A gap between two words that is shorter, in milliseconds, belongs to the first one. */
+/* A gap between two words that is shorter, in milliseconds, belongs to the first one; behind a comma or other punctuation,
+ * where voices pause, less is a pause. */
 #define LABIAL_WORDS_PAUSE 150u
+#define LABIAL_WORDS_COMMA 80u
 
 /* The end of a word whose end is not known: the next word's beginning, or what such a word usually lasts. */
 #define LABIAL_WORDS_NO_END 0xffffffffu
@@ -177,8 +179,9 @@ int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own
 /*
  * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
  * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
- * labial_words_end(). A gap under LABIAL_WORDS_PAUSE belongs to the word before it, a longer one is silence. A word
- * that ends after the next one begins is cut off there. A text that is silent leaves its time to what is beside it.
+ * labial_words_end(). A gap under LABIAL_WORDS_PAUSE, or under LABIAL_WORDS_COMMA behind punctuation, belongs to the word
+ * before it, a longer one is silence. A word that ends after the next one begins is cut off there. A text that is silent
+ * leaves its time to what is beside it.
  *
  * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
  * LABIAL_ERROR_STATE (not prepared, or after labial_words_end()), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
@@ -241,6 +244,7 @@ struct labial_words_span {
     labial_word_t word;
     uint32_t start, end;                   /* milliseconds */
     uint8_t open;                          /* the end is not known */
+    uint8_t stops;                         /* punctuation ends the word */
     uint8_t spelt;                         /* `reach` holds */
     uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
 };

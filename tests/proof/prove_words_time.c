@@ -39,7 +39,8 @@ int main(void)
 {
     static labial_words_own_t own;
     static uint32_t ends[LABIAL_WORDS_CHARACTERS];
-    static char text[1];
+    static char text[8];
+    size_t size = (size_t)Frama_C_interval(0, sizeof text);
     labial_words_t *any;
     unsigned phoneme;
     uint32_t lasts;
@@ -51,6 +52,7 @@ int main(void)
     any_word.count = (uint8_t)Frama_C_interval(0, LABIAL_WORDS_PHONEMES);
     labial_words_length(OR_NULL(labial_words_model_t *, &model), OR_NULL(labial_word_t *, &any_word));
     FILL(ends);
+    FILL(text);
     any = OR_NULL(labial_words_t *, &stream);
     any_state(&own);
     switch (Frama_C_interval(0, 8)) {
@@ -61,10 +63,10 @@ int main(void)
         labial_words_pronounce(any, OR_NULL(labial_words_own_t *, &own));
         break;
     case 2:
-        labial_words_push(any, OR_NULL(char *, text), any_size, any_uint32, any_uint32);
+        labial_words_push(any, OR_NULL(char *, text), size, any_uint32, any_uint32);
         break;
     case 3:
-        labial_words_push_characters(any, OR_NULL(char *, text), any_size, any_uint32, OR_NULL(uint32_t *, ends),
+        labial_words_push_characters(any, OR_NULL(char *, text), size, any_uint32, OR_NULL(uint32_t *, ends),
                                      any_unsigned);
         break;
     case 4:

@@ -1,7 +1,7 @@
 """The reference of ``lib/words_time.c``: what share of a word's time each of its phonemes gets.
 
-A phoneme weighs its mean duration, times the factor of every condition that holds for it. The durations were fitted to
-the labels of three voices of flite, the factors to those of conditions that lengthen or shorten sounds in English.
+A phoneme weighs its mean duration, times the factor of every condition that holds for it. Both were fitted to the
+speech of 180 people and of three voices of flite (docs/words.md).
 Weights are whole numbers: 64 for a millisecond, and factors in 1/256, rounded down after each.
 """
 
@@ -15,9 +15,9 @@ VOWEL, VOICELESS = 1, 2
 _VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
 _VOICELESS = frozenset("CH F HH K P S SH T TH".split())
 
-_MEANS = """SIL 100 AA 96 AE 99 AH 45 AO 84 AW 137 AY 139 B 60 CH 118 D 47 DH 39 EH 86 ER 95 EY 128 F 96 G 68 HH 55
-    IH 53 IY 99 JH 103 K 78 L 78 M 63 N 60 NG 74 OW 117 OY 148 P 95 R 59 S 109 SH 113 T 68 TH 97 UH 55 UW 81 V 51 W 61
-    Y 82 Z 86 ZH 106""".split()
+_MEANS = """SIL 100 AA 101 AE 113 AH 45 AO 97 AW 144 AY 141 B 55 CH 125 D 48 DH 46 EH 77 ER 91 EY 126 F 93 G 70 HH 57
+    IH 53 IY 94 JH 92 K 82 L 81 M 67 N 60 NG 82 OW 120 OY 152 P 86 R 67 S 102 SH 122 T 63 TH 89 UH 58 UW 81 V 52 W 73
+    Y 78 Z 95 ZH 121""".split()
 _MEAN = dict(zip(_MEANS[::2], map(int, _MEANS[1::2])))
 
 #: (40,) mean duration of each phoneme, milliseconds, and its class: `VOWEL`, `VOICELESS` or 0.
@@ -26,11 +26,11 @@ CLASSES = tuple(VOWEL if name in _VOWELS else VOICELESS if name in _VOICELESS el
 
 #: Factors of a vowel, per cent: of a word of one syllable, of three or more, in the last and in the first syllable,
 #: before a voiceless consonant, before a vowel, at the word's end, in the last syllable before a pause.
-VOWEL_FACTORS = {"one": 108, "many": 94, "last": 103, "first": 108, "voiceless": 106, "vowel": 109, "final": 102,
-                 "pause": 133}
+VOWEL_FACTORS = {"one": 105, "many": 106, "last": 101, "first": 101, "voiceless": 101, "vowel": 117, "final": 101,
+                 "pause": 162}
 #: Factors of a consonant: the word's first, its last, after a consonant, before one, behind the last vowel before a
 #: pause, between vowels.
-CONSONANT_FACTORS = {"first": 117, "last": 102, "after": 88, "before": 95, "pause": 138, "between": 109}
+CONSONANT_FACTORS = {"first": 118, "last": 104, "after": 85, "before": 98, "pause": 160, "between": 115}
 
 
 def weights(word: Sequence[int], pause: bool) -> List[int]:
