@@ -11,7 +11,7 @@ from labial.errors import ModelError
 from labial.words import decoder
 from labial.words.alignment import align, learn, loosened
 from labial.words.dictionary import LETTERS, Entry, pronunciations
-from labial.words.hashing import multiplier_for
+from labial.words.packing import multiplier_for
 from labial.words.questions import LABELS_MOST, Asked, features
 from labial.words.tables import WordTables
 from labial.words.trees import FIRST, OTHER, Samples, grow, prune
