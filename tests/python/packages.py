@@ -52,7 +52,7 @@ def attributions() -> Dict[str, str]:
     of the dictionary, not from the headers that the packages' own notices are made of."""
     from labial.hearing.model import load as load_hearing
     from labial.tables.model import load
-    from labial.words.notice import NOTICE
+    from labial.words.dictionary import NOTICE
 
     found = {"words_en": NOTICE}
     for path in (SOURCE / "export" / "models").glob("*.npz"):
