@@ -7,8 +7,7 @@ from typing import Sequence
 import numpy as np
 
 from labial.files.faps import CHANNELS
-from labial.hearing.model import INPUTS, HearingModel
-from labial.hearing.plans import CLASSES, Memory
+from labial.hearing.model import CLASSES, INPUTS, HearingModel, Memory
 
 
 def random_hearing(seed: int = 0, units: int = 8, memories: Sequence[Memory] = (Memory(2, 1, 1),)) -> HearingModel:

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("soxr")
 
-from labial.hearing import augment, distort  # noqa: E402
+from labial.hearing import distort  # noqa: E402
 from labial.hearing.features import BANDS, FLOOR, RATE, log_energies, triangles  # noqa: E402
 
 
@@ -96,7 +96,7 @@ def test_drawn_distortions_cover_their_ranges() -> None:
 
 def test_noise_has_the_bands_of_noise() -> None:
     """Of white noise the bands have energies in proportion to their triangles; all together have a mean of 1."""
-    found = np.exp2(augment.white(60.0, np.random.default_rng(0))).mean(axis=0)
+    found = np.exp2(distort.white(60.0, np.random.default_rng(0))).mean(axis=0)
     shares = triangles().sum(axis=0)
     assert found == pytest.approx(shares / shares.mean(), rel=0.05)
 
@@ -110,7 +110,7 @@ def test_noise_is_mixed_at_its_ratio() -> None:
     ratio = 10.0
     scale = distort.rms(speech * swell) / distort.rms(hiss) * 10 ** (-ratio / 20)
     true = log_energies(speech * swell + scale * hiss)[2:]
-    found = augment.mixed(given, added - 5.0, np.array([ratio]))[0]
+    found = distort.mixed(given, added - 5.0, np.array([ratio]))[0]
     assert np.abs((found - true).mean(axis=0)).max() < 0.25
     assert np.abs((found - true).reshape(4, -1).mean(axis=1)).max() < 0.2
 
@@ -118,7 +118,7 @@ def test_noise_is_mixed_at_its_ratio() -> None:
 def test_bands_are_warped_linearly() -> None:
     """Band k has what was in band 1.1 k; a factor of 1 changes nothing."""
     ramp = np.tile(np.arange(BANDS, dtype=np.float32), (2, 3, 1))
-    found = augment.warped(ramp, np.array([1.0, 1.1]))
+    found = distort.warped(ramp, np.array([1.0, 1.1]))
     assert found[0] == pytest.approx(ramp[0], abs=1e-5)
     assert found[1, 0] == pytest.approx(np.minimum(1.1 * np.arange(BANDS), BANDS - 1), abs=1e-4)
 
@@ -126,13 +126,13 @@ def test_bands_are_warped_linearly() -> None:
 def test_augmented_energies() -> None:
     """Shapes and the floor; digital silence stays where no noise comes; most crops have noise in it; the same seed
     gives the same; the level of speech strays to both sides."""
-    pool = augment.white(30.0, np.random.default_rng(0))
+    pool = distort.white(30.0, np.random.default_rng(0))
     given = np.full((400, 60, BANDS), FLOOR, np.float32)
     given[:, 20:] = 16.0
-    found = augment.augmented(given, pool, np.random.default_rng(1))
+    found = distort.augmented(given, pool, np.random.default_rng(1))
     assert found.shape == given.shape and found.dtype == np.float32 and found.min() == FLOOR
-    assert np.array_equal(found, augment.augmented(given, pool, np.random.default_rng(1)))
+    assert np.array_equal(found, distort.augmented(given, pool, np.random.default_rng(1)))
     silent = (found[:, :20] == FLOOR).all(axis=(1, 2))
-    assert 1 - augment.NOISY < silent.mean() + 0.02 and silent.mean() < 1 - augment.NOISY + 0.06
+    assert 1 - distort.NOISY < silent.mean() + 0.02 and silent.mean() < 1 - distort.NOISY + 0.06
     moved = np.median(found[:, 20:], axis=(1, 2)) - 16.0
     assert 1.3 < moved.std() < 3.5 and abs(moved.mean()) < 0.6
