@@ -23,8 +23,7 @@ from labial.errors import LabialError
 from labial.fit.sentences import read_sentences
 from labial.rig import table
 from labial.rig.animation import FORMATS
-from labial.rig.description import read
-from labial.rig.gestures import SOURCES
+from labial.rig.description import SOURCES, read
 from labial.rig.table import FAP_MAX, convert, expected
 from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
