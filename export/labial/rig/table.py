@@ -1,5 +1,5 @@
-"""A rig as the C table that ``labial/rig.h`` declares and as JSON for pages, and the float64 computation to compare the C
-library with."""
+"""A rig as the C table that ``labial/rig.h`` declares and as JSON for pages, and the float64 computation to compare the
+C library with."""
 
 from __future__ import annotations
 
