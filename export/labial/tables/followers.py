@@ -1,5 +1,4 @@
-"""Which channels of a frame a model solves, and how the others follow (``lib/followers.c``; docs/method.md, Channels that
-follow).
+"""Which channels of a frame a model solves, and how the others follow (``lib/followers.c``; docs/method.md).
 
 A model's `source` (13,) names for each channel of a frame the one whose motion it has: itself where it is solved, the
 other side of the mouth where it mirrors that, or FROM_CORNERS where it is FAP 17, computed of the corners.
