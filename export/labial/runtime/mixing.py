@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Iterable, List, Sequence, Tuple, Union
 
-from labial.core.numbers import number
+from labial.core.guard import number
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.runtime.frame import Frame

@@ -7,7 +7,7 @@ import math
 from array import array
 from typing import Any, List, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone
+from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import (
     ARTICULATION_MAX,
     DONE,
@@ -23,7 +23,6 @@ from labial.core.library import (
     library,
     memory,
 )
-from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError, StreamError
 from labial.runtime.frame import Frame, Latency
 from labial.runtime.models import LABELS, Model, bundled

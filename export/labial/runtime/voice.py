@@ -12,9 +12,8 @@ import time
 import warnings
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.guard import Guard, alone
+from labial.core.guard import Guard, alone, duration, number
 from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
-from labial.core.numbers import duration, number
 from labial.core.words import OwnWords, labels
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
