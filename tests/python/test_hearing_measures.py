@@ -12,7 +12,6 @@ import pytest
 
 pytest.importorskip("soxr")
 
-from hearing_models import random_hearing  # noqa: E402
 from labial.__main__ import main  # noqa: E402
 from labial.evaluate import hearing, loudness  # noqa: E402
 from labial.files.faps import CHANNELS, FAP_NUMBERS  # noqa: E402
@@ -22,6 +21,7 @@ from labial.hearing.features import FRAME, RATE  # noqa: E402
 from labial.hearing.measures import Figures, delay, measured, pooled  # noqa: E402
 from labial.hearing.model import CLASSES, save  # noqa: E402
 from labial.hearing.prepared import Prepared  # noqa: E402
+from models import random_hearing  # noqa: E402
 from runtime import needs_runtime  # noqa: E402
 
 SIL, M, AA = (CLASSES.index(name) for name in ("SIL", "M", "AA"))
