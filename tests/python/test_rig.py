@@ -25,8 +25,8 @@ from labial.rig import table
 from labial.rig.animation import FORMATS
 from labial.rig.description import SOURCES, read
 from labial.rig.table import FAP_MAX, convert, expected
-from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
+from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
 from packages import CC, CXX, SOURCE, run, warnings
 from runtime import needs_runtime

@@ -100,8 +100,7 @@ def add_table_options(command: argparse.ArgumentParser) -> None:
 
 def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedModel]:
     """The float model that the options name, with their amplitude, and its exported tables."""
-    from labial.tables.amplitude import widened
-    from labial.tables.model import load
+    from labial.tables.model import load, widened
     from labial.tables.quantise import quantise
 
     model, factor = load(options.model), options.amplitude

@@ -13,7 +13,7 @@ from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
 from labial.errors import LabialError, StreamError, did_you_mean
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
+from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
 
 #: Frames per second, LABIAL_HEAR_FPS.

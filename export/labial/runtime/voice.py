@@ -19,8 +19,8 @@ from labial.corpus.messages import Messages, Stats
 from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
 from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.stream import Frame
 from labial.runtime.words import Sounds, offset
 
 #: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
