@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Sequence
 from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, put, shows_progress
 from labial.defaults import SPLITS
 from labial.errors import LabialError, needs
-from labial.files.arguments import positive, seed
+from labial.files.grammar import positive, seed
 
 if TYPE_CHECKING:
     from labial.evaluate.material import Options, Outcome

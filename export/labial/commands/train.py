@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Sequence, Tuple
 from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
 from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError, needs
-from labial.files.arguments import number, positive, seed, whole
+from labial.files.grammar import finite, positive, seed, whole
 
 if TYPE_CHECKING:
     from labial.corpus.episode import Episode
@@ -201,13 +201,13 @@ def add_train_hear(command: argparse.ArgumentParser) -> None:
                          help="size of the network: host and ahead are for computers, and ahead knows a frame 160 ms "
                          "later (small)")
     command.add_argument("--steps", type=positive, default=30000, help="batches of 160 s that are learned (30000)")
-    command.add_argument("--rate", type=number, default=0.003, help="of learning, its highest (0.003)")
-    command.add_argument("--smoothness", type=number, default=6.0, help="weight of the error of the frames' second "
+    command.add_argument("--rate", type=finite, default=0.003, help="of learning, its highest (0.003)")
+    command.add_argument("--smoothness", type=finite, default=6.0, help="weight of the error of the frames' second "
                          "differences (6)")
     command.add_argument("--start", metavar="HEAR.npz", help="begin with what this model hears, which has as many "
                          "blocks and no more units, rather than anew")
     command.add_argument("--teacher", metavar="HEAR.npz", help="also learn what this model hears")
-    command.add_argument("--taught", type=number, default=0.5, help="with --teacher: its share where the truth is "
+    command.add_argument("--taught", type=finite, default=0.5, help="with --teacher: its share where the truth is "
                          "known (0.5)")
     command.add_argument("--sounds", nargs="+", default=[], metavar="FOLDER", help="with --teacher: sounds whose text "
                          "is not known; --shares and --takes name these folders last")
@@ -285,7 +285,7 @@ def _values(text: Any, option: str, count: int) -> Tuple[float, ...]:
     if text is None:
         return ()
     try:
-        values = tuple(number(item) for item in text.split(","))
+        values = tuple(finite(item) for item in text.split(","))
     except argparse.ArgumentTypeError as error:
         raise LabialError(f"{option}: {error}") from None
     if len(values) != count:
