@@ -24,8 +24,7 @@ from measure.pages import Sentence, row, sentence, share, updated
 from measure.profile import cycles
 from measure.sources import Results, number, tables
 from measure.stack import CallGraph, _machine_code, public_functions
-from packages import CC, SOURCE
-from runtime import needs_runtime
+from packages import CC, SOURCE, needs_runtime
 
 MEAN = Figure("m0", "speech: mean", 1000.0, "instructions/frame", "run it", "gcc 12.2.1")
 

@@ -16,9 +16,8 @@ import elevenlabs
 import labial
 from browser import CHROMIUM, REASON, Browser, Page, served
 from npm import TOOLS_MISSING, node, package
-from packages import SOURCE
+from packages import SOURCE, needs_runtime
 from pages import parse
-from runtime import needs_runtime
 
 pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(not CHROMIUM, reason=REASON),
               pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)]  # fmt: skip

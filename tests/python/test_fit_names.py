@@ -23,7 +23,7 @@ from labial.fit.solve import FEATURES, Group, Solution, groups_of
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 from labial.rig.table import FAP_MAX, convert
-from runtime import needs_runtime
+from packages import needs_runtime
 
 VERTICES, TRIANGLES, SHAPES = made_head()
 #: How files spell sides.

@@ -43,7 +43,7 @@ from labial.train.protrusion import table, with_protrusion
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, streams
-from runtime import needs_runtime
+from packages import needs_runtime
 
 ENDS = np.array([-60.0, 40.0])
 

@@ -20,7 +20,7 @@ from labial.files.frames import opening  # noqa: E402
 from labial.hearing import clips, distort, prepared, targets  # noqa: E402
 from labial.hearing.features import BANDS, FLOOR, RATE, log_energies, triangles  # noqa: E402
 from labial.hearing.model import CLASSES  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 
 LAB = "0.00 0.10 SIL\n0.10 0.20 M\n0.20 0.50 AA1\n"
 

@@ -22,7 +22,7 @@ from labial.hearing.measures import Figures, delay, measured, pooled  # noqa: E4
 from labial.hearing.model import CLASSES, save  # noqa: E402
 from labial.hearing.prepared import Prepared  # noqa: E402
 from models import random_hearing  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 
 SIL, M, AA = (CLASSES.index(name) for name in ("SIL", "M", "AA"))
 

@@ -25,7 +25,7 @@ from labial.hearing.model import save  # noqa: E402
 from labial.runtime.render import render  # noqa: E402
 from models import random_hearing  # noqa: E402
 from npm import TOOLS_MISSING, tools  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 
 needs_node = pytest.mark.skipif(not shutil.which("node"), reason="needs node: install the Debian package nodejs")
 needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)

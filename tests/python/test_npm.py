@@ -29,8 +29,7 @@ from labial.hearing.quantise import quantise
 from labial.rig import FACES, description_of
 from messages import SAMPLES
 from npm import MISSING, answered, package
-from packages import SOURCE, run
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime, run
 from test_hearing import voice
 
 SAY = os.environ.get("LABIAL_SAY", "")

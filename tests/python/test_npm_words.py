@@ -14,7 +14,7 @@ from labial.corpus.words import PLAIN, Pronunciation, pronunciation
 from labial.errors import DataError, LabialError
 from messages import NAMES, PIECES, SAMPLES, drawn_messages
 from npm import answered
-from runtime import needs_runtime
+from packages import needs_runtime
 from test_npm import MALFORMED, drawn_json
 
 pytestmark = needs_runtime

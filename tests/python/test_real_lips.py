@@ -20,8 +20,7 @@ from labial.files.frames import write_csv
 from labial.hearing.features import FLOOR, RATE, log_energies
 from labial.hearing.model import load, save
 from models import random_hearing
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 

@@ -28,8 +28,7 @@ from labial.rig.table import FAP_MAX, convert, expected
 from labial.runtime.rig import Rig
 from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
-from packages import CC, CXX, SOURCE, run, warnings
-from runtime import needs_runtime
+from packages import CC, CXX, SOURCE, needs_runtime, run, warnings
 
 FACES = SOURCE / "examples" / "faces"
 #: Descriptions whose tables are kept, with the tables' folder; Python reads those of examples/pi, beside and

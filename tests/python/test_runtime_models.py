@@ -29,8 +29,7 @@ from labial.tables.phones import read_stream
 from labial.tables.quantise import ExportedModel, quantise
 from messages import SAMPLES
 from models import random_model
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 

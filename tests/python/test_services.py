@@ -21,7 +21,7 @@ from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
 from labial.see.motion import read_bands
 from messages import SAMPLES
-from runtime import needs_runtime
+from packages import needs_runtime
 
 pytestmark = needs_runtime
 #: Samples that tell no ends of words, that tell phonemes, and that tell characters.

@@ -17,9 +17,8 @@ import labial
 from browser import CHROMIUM, REASON, Browser, Page
 from labial.hearing import espeak
 from npm import NODE, TOOLS_MISSING, answered, install, node, package, tools
-from packages import SOURCE, run
+from packages import SOURCE, needs_runtime, run
 from pages import parse
-from runtime import needs_runtime
 
 EXAMPLE = SOURCE / "examples" / "speak-page"
 needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)

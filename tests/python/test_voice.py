@@ -19,8 +19,8 @@ import labial
 from labial.core.words import OwnWords
 from messages import SAMPLES
 from oracle import Plan, rested, times
+from packages import needs_runtime
 from regenerate_voices import SOUNDS, WORDS
-from runtime import needs_runtime
 
 pytestmark = needs_runtime
 
