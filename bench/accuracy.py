@@ -7,6 +7,10 @@ A separate program, with numpy and the exporter on the path, that prints JSON:
 
 NAME is the bundled model's C name, SOLVER labial-bench-solve, KIND its name of the model. The phoneme streams are those
 of the corpus's episodes, or random ones from the model.
+
+    accuracy.py utterances MODEL.npz CORPUS
+
+prints a corpus's utterances for labial-bench-delay: a line for each, phoneme numbers and milliseconds, alternating.
 """
 
 from __future__ import annotations
@@ -108,10 +112,20 @@ def measure(
     }
 
 
+def print_utterances(model: Model, corpus: str) -> None:
+    """Prints all utterances of a corpus."""
+    for episode in read_corpus(corpus, model.kind):
+        stream = stream_of(episode.segments, model, round(1000 * episode.segments[0].start))
+        print(" ".join(f"{phoneme} {milliseconds}" for phoneme, milliseconds in stream))
+
+
 def main(arguments: List[str]) -> int:
-    """Prints the figures as JSON; status 1 and a message for invalid input."""
-    path, name, solver, kind, *corpus = arguments
+    """Prints the figures as JSON, or utterances; status 1 and a message for invalid input."""
     try:
+        if arguments[0] == "utterances":
+            print_utterances(load(arguments[1]), arguments[2])
+            return 0
+        path, name, solver, kind, *corpus = arguments
         model = load(path)
         exported = quantise(model, name)
         check_bundled(exported, Path(path).resolve().parents[2])

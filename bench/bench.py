@@ -16,22 +16,7 @@ import sys
 from pathlib import Path
 from typing import Callable, Dict, List
 
-from measure import (
-    baseline,
-    boards,
-    examples,
-    figures,
-    hearing,
-    host,
-    loss,
-    mlpg,
-    pages,
-    profile,
-    sizes,
-    stack,
-    table,
-    words,
-)
+from measure import baseline, boards, figures, hearing, host, loss, mlpg, pages, profile, sizes, stack, table
 from measure.core import Bench, Figure, LeftOut
 
 
@@ -68,9 +53,9 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
         attempt(stack.measure, board)
         attempt(boards.measure, board, checksums)
         attempt(hearing.measure, board, heard)
-        attempt(words.measure, board, heard)
-    attempt(examples.esp32_hear)
-    attempt(examples.uno)
+        attempt(hearing.measure_words, board, heard)
+    attempt(sizes.esp32_hear)
+    attempt(sizes.uno)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(host.python, compiler)

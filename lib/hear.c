@@ -13,10 +13,7 @@
 #include "articulation.h"
 #include "fade.h"
 #include "fixed.h"
-#include "hear_convert.h"
-#include "hear_features.h"
-#include "hear_motion.h"
-#include "hear_network.h"
+#include "hear_parts.h"
 
 #define HEAR_FRAME_MS (1000u / LABIAL_HEAR_FPS)
 

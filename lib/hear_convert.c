@@ -4,7 +4,7 @@
  *
  * Times are in tenths of a point of the grid, of which 48 and 44.1 kHz have 16 for each sample.
  */
-#include "hear_convert.h"
+#include "hear_parts.h"
 
 #include "fixed.h"
 #include "hear_convert_table.h"

@@ -11,7 +11,7 @@
  * The window's samples, its spectrum and what layers of the network put out share their memory, since each is done with
  * before the next one begins; only the samples that the next window needs are kept aside.
  */
-#include "hear_features.h"
+#include "hear_parts.h"
 
 #include <string.h>
 

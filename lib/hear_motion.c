@@ -7,12 +7,11 @@
  * Silence is rest, whatever the network makes of it: as the frames after the one that is due are known, the face leaves
  * rest so early that it is all there when the sound begins.
  */
-#include "hear_motion.h"
+#include "hear_parts.h"
 
 #include <string.h>
 
 #include "articulation.h"
-#include "hear_network.h"
 
 /* A frame is silent when it, as many before it and the next ones are, as far as they are known; the face comes to rest,
  * and leaves it, in as many frames as these. */

@@ -8,7 +8,7 @@
  * No sum overflows: 252 products of a weight and an activation are below 2^30, and so is a bias of 16 bits, shifted by
  * 15; a memory's 16 products are below 2^26.
  */
-#include "hear_network.h"
+#include "hear_parts.h"
 
 #include <string.h>
 

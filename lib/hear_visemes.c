@@ -4,7 +4,7 @@
  */
 #include "fade.h"
 #include "fixed.h"
-#include "hear_motion.h"
+#include "hear_parts.h"
 #include "labial/hear.h"
 
 /* How much of the sound of the last frame the face shows. */

@@ -3,7 +3,7 @@ import { CHANNELS, LabialError, NO_LAUGHTER, VISEMES, amount, shown } from "./me
 
 const DURATION_MAX = 3600000;
 /** Milliseconds. If no sound of a stream lasts longer than SHORTEST, they are probably seconds, as in
- * export/labial/core/numbers.py; if one lasts longer than LONGEST, milliseconds were probably taken for seconds. */
+ * export/labial/core/guard.py; if one lasts longer than LONGEST, milliseconds were probably taken for seconds. */
 const SHORTEST = 5;
 const LONGEST = 10000;
 const ARTICULATION_MAX = 200;

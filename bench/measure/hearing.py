@@ -1,4 +1,5 @@
-"""What hearing costs on the boards: instructions for each rate of sound, flash and RAM of each model."""
+"""What hearing and words cost on the boards: instructions for each rate of sound, flash and RAM of each model of
+hearing; instructions for a word."""
 
 from __future__ import annotations
 
@@ -15,6 +16,8 @@ PARTS = ("hear", "hear_convert", "hear_features", "hear_motion", "hear_network",
 
 #: Rates of sound that the images hear, samples per second.
 RATES = (16000, 24000, 44100, 48000)
+#: Words that the images read (bench/CMakeLists.txt).
+WORDS = 2000
 
 
 def models(bench: Bench) -> List[str]:
@@ -63,3 +66,21 @@ def _flash(bench: Bench, board: Board, tool_version: str) -> Dict[str, Tuple[int
             shown = [*command, *(f"lib/{part}.c" for part in PARTS), f"lib/models/{model}.c", "&&", size, "*.o"]
             found[model] = (code + tables, [str(item) for item in shown])
     return found
+
+
+def measure_words(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
+    """Adds what words cost on `board`: instructions to read one, and to make phonemes in time of it. `checksums` are
+    those of the boards before; raises RuntimeError if its phonemes differ from theirs."""
+    tool_version = version(f"{board.prefix}gcc")
+    command = build(bench, board)["bench_words"]
+    found = printed(command)
+    if found["words"] != WORDS:
+        raise RuntimeError(f"{bench.shown(command)}: {found['words']} words, not {WORDS}")
+    if checksums.setdefault("words", found["checksum"]) != found["checksum"]:
+        raise RuntimeError(f"{bench.shown(command)}: its phonemes are not those of the other boards")
+    for figure, value in (("words: mean to read one", round(found["read_instructions"] / WORDS)),
+                          ("words: worst to read one", found["read_worst"]),
+                          ("words: mean to say one", round(found["say_instructions"] / WORDS)),
+                          ("words: worst to say one", found["say_worst"])):  # fmt: skip
+        bench.add(board.preset, figure, value, "instructions", command, tool_version)
+    bench.add(board.preset, "words: stack, painted", found["stack"], "bytes", command, tool_version)

@@ -42,8 +42,8 @@ def delay(bench: Bench, corpus: Optional[str]) -> None:
     bench.add("delay", "demo sentence: latest frame", int(run([program]).stdout), "ms", [program], "the frame rate")
     if not corpus:
         return
-    command = [python_with_numpy(bench), bench.source / "bench" / "utterances.py", model_path(bench, "speech_en"),
-               corpus]
+    command = [python_with_numpy(bench), bench.source / "bench" / "accuracy.py", "utterances",
+               model_path(bench, "speech_en"), corpus]
     utterances = run(command, env=environment(bench)).stdout
     found = sorted(map(int, run([program, "-"], input=utterances).stdout.split()))
     shown = ["PYTHONPATH=export", "python3", *map(str, command[1:-1]), "CORPUS", "|", program, "-"]

@@ -7,12 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "demo.h"
 #include "labial/labial.h"
 #include "laughter_synthetic.h"
-#include "page.h"
-#include "score.h"
 #include "speech_en.h"
-#include "together.h"
 
 static const score_voice_t speech = { &speech_en, &speech_en_names, "speech" };
 static const score_voice_t laughter = { &laughter_synthetic, &laughter_synthetic_names, "laughter" };

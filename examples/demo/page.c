@@ -1,7 +1,7 @@
 /*
  * page.c - lists of frames and phonemes, and their JSON with the sound.
  */
-#include "page.h"
+#include "demo.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

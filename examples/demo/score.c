@@ -1,7 +1,7 @@
 /*
  * score.c - converts files of timings to one list of phonemes and the times of laughs.
  */
-#include "score.h"
+#include "demo.h"
 
 #include <stdio.h>
 #include <stdlib.h>

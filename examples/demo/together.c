@@ -4,7 +4,7 @@
  *
  * A device makes one iteration of the loop in together_play() in each frame period.
  */
-#include "together.h"
+#include "demo.h"
 
 #include <string.h>
 

@@ -16,8 +16,7 @@ import numpy as np
 from labial.files.faps import CHANNELS
 from labial.hearing import emit, integer
 from labial.hearing.convert import RATES
-from labial.hearing.model import HearingModel
-from labial.hearing.plans import Memory
+from labial.hearing.model import HearingModel, Memory
 from labial.hearing.quantise import HearingTables, quantise
 
 UNITS = 8

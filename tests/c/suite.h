@@ -87,6 +87,22 @@ static size_t suite_count;
             fail_msg("%s (frame %zu)", (host)->complaint, (host)->recorder.count);                                     \
     } while (0)
 
+/* For suites that have an accepted fixture_model_t `f`: sets `place` in it to a value, wants `expected` from
+ * labial_model_check(), and puts the old value back. */
+#define TRY(type, place, value, expected)                                                                              \
+    do {                                                                                                               \
+        type const old_ = (place);                                                                                     \
+        int got_;                                                                                                      \
+        (place) = (type)(value);                                                                                       \
+        got_ = labial_model_check(&f.model);                                                                           \
+        (place) = old_;                                                                                                \
+        if (got_ != (expected))                                                                                        \
+            fail_msg("%s = %s gives %d, not %s", #place, #value, got_, #expected);                                     \
+    } while (0)
+
+#define REFUSED(type, place, value) TRY(type, place, value, LABIAL_ERROR_MODEL)
+#define ACCEPTED(type, place, value) TRY(type, place, value, LABIAL_OK)
+
 /* The program's main(), or in a program of several suites a function that theirs calls. */
 #ifndef SUITE_MAIN
 #define SUITE_MAIN main

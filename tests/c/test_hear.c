@@ -10,7 +10,7 @@
 
 #include "fixture.h"
 #include "hear_fixture.h"
-#include "hear_network.h"
+#include "hear_parts.h"
 #include "hear_sound.h"
 #include "hears.h"
 #include "labial/hear.h"

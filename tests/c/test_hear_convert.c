@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hear_convert.h"
+#include "hear_parts.h"
 #include "hear_convert_table.h"
 
 #define PI 3.14159265358979323846

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "fixture.h"
-#include "hear_features.h"
+#include "hear_parts.h"
 
 #define PI 3.14159265358979323846
 #define WINDOW LABIAL_HEAR_WINDOW_

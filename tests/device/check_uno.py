@@ -1,6 +1,8 @@
-"""Runs the jaw on a simulated Arduino Uno and judges what its pins do.
+"""Runs the jaw on a simulated Arduino Uno and judges what its pins do; or holds the player of baked tracks to its
+limits of size.
 
     python check_uno.py TALK SIMULATOR IMAGE
+    python check_uno.py size AVR_SIZE WITH.elf WITHOUT.elf
 
 TALK is the folder with talk.h, the motion that was baked, talk.lab, the phonemes that it is of, and dfplayer.h with the
 times of the sound's module. They are read here as text, the motion's bytes and limits by themselves. Needs nothing but
@@ -19,6 +21,9 @@ CLOCK = 16_000_000
 PERIOD = 320_000  # clocks: 20 ms
 COUNT = 8  # clocks of the timer's count, half a microsecond
 PRESS = 8000  # milliseconds at which the button is pressed
+
+#: Most bytes of the player.
+FLASH, RAM = 600, 8
 
 #: The command to play file 1 of folder 1, with its checksum, which is worked out once more below.
 COMMAND = [0x7E, 0xFF, 0x06, 0x0F, 0x00, 0x01, 0x01, 0xFE, 0xEA, 0xEF]
@@ -118,8 +123,25 @@ def main(folder: Path, command: List[str]) -> List[str]:
     return faults + judge_lips(wanted, (folder / "talk.lab").read_text(encoding="ascii"))
 
 
+def sizes(tool: str, image: str) -> Tuple[int, int]:
+    """Flash and RAM of an image, bytes, from the table that avr-size prints."""
+    row = subprocess.run([tool, image], capture_output=True, text=True, check=True).stdout.splitlines()[1].split()
+    text, data, bss = map(int, row[:3])
+    return text + data, data + bss
+
+
+def judge_size(tool: str, image: str, without: str) -> List[str]:
+    """What is wrong with the size of the player, by which two images differ."""
+    (flash, ram), (other_flash, other_ram) = sizes(tool, image), sizes(tool, without)
+    flash, ram = flash - other_flash, ram - other_ram
+    told = f"player: {flash} bytes of flash, {ram} bytes of RAM"
+    print(told)
+    # Less than these would mean that the compiler has left the player out of the one, or left it in the other.
+    return [] if 40 <= flash <= FLASH and 4 <= ram <= RAM else [told]
+
+
 if __name__ == "__main__":
-    found = main(Path(sys.argv[1]), sys.argv[2:])
+    found = judge_size(*sys.argv[2:]) if sys.argv[1] == "size" else main(Path(sys.argv[1]), sys.argv[2:])
     for fault in found:
         print(f"FAILED: {fault}")
     sys.exit(1 if found else 0)

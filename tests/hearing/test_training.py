@@ -14,10 +14,9 @@ import torch
 
 from labial.__main__ import main
 from labial.errors import LabialError
-from labial.hearing import features, lessons, network, quantise, targets, train
+from labial.hearing import features, network, prepared, quantise, targets, train
 from labial.hearing.learner import Learner, Remembered, model_of, restore, rounded
-from labial.hearing.model import HearingModel, load
-from labial.hearing.plans import CLASSES, PLANS, Memory
+from labial.hearing.model import CLASSES, PLANS, HearingModel, Memory, load
 from labial.hearing.prepared import Prepared
 from labial.hearing.targets import Closure
 
@@ -137,7 +136,7 @@ def test_a_teacher_is_heard() -> None:
     """By hand: the teacher's share of frames, classes and closures; of sounds without a text only what it hears."""
     torch.manual_seed(3)
     teacher, part = made(Learner(PLANS["small"])), folder(2, 4)
-    own, both, alone = (lessons.lesson(part, *given) for given in ((), (teacher, 0.25), (teacher, 1.0)))
+    own, both, alone = (prepared.lesson(part, *given) for given in ((), (teacher, 0.25), (teacher, 1.0)))
     energies = part.energies[: 2 * part.lengths[0]].astype(np.float32)
     heard = network.run(teacher, features.normalise(energies).reshape(part.lengths[0], -1))
     first = slice(0, part.lengths[0])

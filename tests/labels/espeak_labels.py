@@ -1,6 +1,22 @@
 """Lists the labels that espeak-ng emits: python espeak_labels.py > labels.tsv
 
-Needs libespeak-ng, its data and the package babel. README.md of this folder says what is asked of it and why.
+``espeak.tsv`` lists every IPA label that espeak-ng 1.51 reports for a phoneme in 31 voices, those of the most spoken
+languages and of languages with front rounded vowels. Its columns are the label, the phoneme of Labial that it must
+become (`-`: none, which is an error or a warning), and the voices whose words contain it. `-` in place of a voice marks
+labels of phonemes that occur only when spoken alone: each table of phonemes of espeak-ng has many that its language
+never uses.
+
+This program lists labels and voices again. It needs libespeak-ng, its data and the package babel. It speaks
+babel's names of countries, languages, scripts, currencies, cities, months and days, some 2,000 words in each
+language, and each phoneme alone. The phonemes of Labial were assigned by hand, by what lips and jaw do in each sound:
+
+- front rounded vowels round: y, ø and the diphthongs that begin so are UW, ʏ and ɵ UH, œ OW; unrounded back ones do
+  not, ɯ is IH; the compressed ɯᵝ of Japanese is UH;
+- a diphthong is its English relative, else its first element; one that rises to an open vowel is that vowel;
+- sounds that close the lips, with or without the tongue, are P, B or M (ɸ, β, pf); sounds in which the lip touches the
+  teeth are F or V (ʋ);
+- trills, taps and flaps are L and D, which do not move the lips; uvular sounds count as velars;
+- signs that espeak-ng writes behind or before a symbol for a variant of it (`-`, `.`, `"`, ʔ) change nothing.
 """
 
 from __future__ import annotations

@@ -3,10 +3,7 @@
  * four. fade.c and the other files of hearing are not part of it; their stand-ins give any of their results, and touch the
  * ends of what those read and write.
  */
-#include "hear_convert.h"
-#include "hear_features.h"
-#include "hear_motion.h"
-#include "hear_network.h"
+#include "hear_parts.h"
 #include "labial/hear.h"
 
 #include "any_fade.h"

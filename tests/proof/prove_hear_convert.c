@@ -2,7 +2,7 @@
  * Any rate; for each that there is, any samples, the first one and others at any place of the ring, at every phase:
  * those of one distance from the grid together, so that the filter's magnitudes add up to what they are.
  */
-#include "hear_convert.h"
+#include "hear_parts.h"
 
 #include "prove.h"
 

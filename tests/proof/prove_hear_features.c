@@ -1,7 +1,7 @@
 /*
  * Any window of samples and any level that a stream can have; any sample, the first one or at any place of a window.
  */
-#include "hear_features.h"
+#include "hear_parts.h"
 
 #include "prove.h"
 

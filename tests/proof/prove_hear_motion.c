@@ -2,8 +2,7 @@
  * Any heads of any number of classes, after any poses, in silence or not, at any articulation. hear_network.c and fixed.c
  * are not part of it.
  */
-#include "hear_motion.h"
-#include "hear_network.h"
+#include "hear_parts.h"
 
 #include "prove.h"
 

@@ -3,7 +3,7 @@
  * any features, any memory. All tables are as long as these sizes ask for, and the workspace ends with the last row.
  * Scores and poses of any number of classes.
  */
-#include "hear_network.h"
+#include "hear_parts.h"
 
 #include <string.h>
 

@@ -1,10 +1,12 @@
-"""Messages of speech services about words, drawn at random, for tests of their readers."""
+"""Messages of speech services, for tests of their readers: the samples of services.json, and messages about words,
+drawn at random."""
 
 from __future__ import annotations
 
 import json
 import random
-from typing import Any, Dict, List, Tuple
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Tuple
 
 #: What stands in texts.
 PIECES = ["Maybe", "people", "hum.", "2024", "$5.50", "1,234", "[laughs]", "<b>", "</b>", "[", "]", "Zürich", "it's",
@@ -117,3 +119,21 @@ def spoil(rng: random.Random, value: Any) -> None:
         else:
             value[key] = rng.choice([None, -1, 1e9, 1e307, "x", True, [], {}, [1], {"a": 1}, 7, "__proto__"])
         return
+
+
+class Sample(NamedTuple):
+    """Messages of a service, and the phonemes that they tell."""
+
+    service: str
+    messages: List[Dict[str, Any]]
+    phonemes: str
+
+    @property
+    def text(self) -> str:
+        """The messages as a file has them, one on each line."""
+        return "".join(json.dumps(message, ensure_ascii=False) + "\n" for message in self.messages)
+
+
+#: The samples of services.json, by their names.
+SAMPLES = {item["name"]: Sample(item["service"], item["messages"], item.get("phonemes", "SIL M EY B IY SIL G OW"))
+           for item in json.loads(Path(__file__).with_name("services.json").read_text(encoding="utf-8"))["samples"]}

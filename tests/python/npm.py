@@ -1,10 +1,13 @@
-"""The npm package as the tests use it: LABIAL_NPM_PACKAGE names its folder, or it is built; scripts that node runs."""
+"""The npm package as the tests use it: LABIAL_NPM_PACKAGE names its folder, or it is built; scripts that node runs;
+and the tools of npm that tests use."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
+import tempfile
 from pathlib import Path
 from typing import Any, Optional
 
@@ -16,6 +19,11 @@ _BUILT = os.environ.get("LABIAL_NPM_PACKAGE", "")
 #: What cannot be had, "" where all is there.
 MISSING = "" if _BUILT or (CMAKE and shutil.which("clang") and shutil.which("wasm-ld")) else (
     "needs clang and wasm-ld: install the Debian packages clang and lld")  # fmt: skip
+FOLDER = SOURCE / "tests" / "npm" / "bundlers"
+NPM = shutil.which("npm") or ""
+#: What the tools of npm lack: bundlers, two versions of node, a compiler of types, as FOLDER's package-lock.json names
+#: them; "" where all is there.
+TOOLS_MISSING = MISSING or ("" if NPM else "needs npm: install the Debian packages nodejs and npm")
 
 
 def package(folder: Path) -> Path:
@@ -51,3 +59,44 @@ def answered(script: str, given: Any, folder: Optional[Path] = None) -> Any:
         pytest.skip(MISSING or "LABIAL_NPM_PACKAGE does not name the built package")
     url = (package(folder or Path()) / "index.js").as_uri()
     return json.loads(run(NODE, "--input-type=module", "-e", _PROLOGUE + script, url, text=json.dumps(given)))
+
+
+def tools() -> Path:
+    """The folder whose node_modules has the tools; installed once, below LABIAL_BUNDLERS where that is set, whoever
+    else asks for it meanwhile."""
+    import fcntl  # which Windows lacks
+
+    folder = Path(os.environ.get("LABIAL_BUNDLERS") or Path(tempfile.gettempdir()) / "labial-bundlers")
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with open(f"{folder}.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        _install_tools(folder)
+    return folder
+
+
+def _install_tools(folder: Path) -> None:
+    names = ("package.json", "package-lock.json", "build.mjs")
+    stamp = folder / hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in names)).hexdigest()[:16]
+    if not stamp.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        for name in names:
+            shutil.copyfile(FOLDER / name, folder / name)
+        run(NPM, "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)  # which checks the hashes
+        stamp.touch()
+
+
+def node(version: int) -> Path:
+    """The program node of this major version."""
+    return tools() / "node_modules" / f"node-{version}" / "bin" / "node"
+
+
+def install(package: Path, folder: Path) -> None:
+    """Packs the packages and lays them into `folder`/node_modules as ``npm install`` does."""
+    own = folder / "node_modules"
+    own.mkdir(parents=True)
+    others = (package.with_name(f"{package.name}-{name}") for name in ("laughter", "hearing", "words"))
+    for source in (package, *others):
+        name = run(NPM, "pack", "--silent", "--pack-destination", folder, cwd=source).strip().splitlines()[-1]
+        shutil.unpack_archive(folder / name, own)
+        (own / "package").rename(own / name.rsplit("-", 1)[0])

@@ -1,4 +1,5 @@
-"""What tests share: commands run on the source tree, a small program, the house's warnings, the tools of SPTK."""
+"""What tests share: commands run on the source tree, the mark of tests of the Python run-time, a small program, the
+house's warnings, the tools of SPTK."""
 
 from __future__ import annotations
 
@@ -18,6 +19,10 @@ SOURCE = Path(os.environ.get("LABIAL_SOURCE", Path(__file__).resolve().parents[2
 CMAKE = os.environ.get("LABIAL_CMAKE") or shutil.which("cmake") or ""
 CC = os.environ.get("LABIAL_CC") or "cc"
 CXX = next(filter(None, map(shutil.which, (os.environ.get("LABIAL_CXX") or "g++", "g++", "clang++", "c++"))), "")
+
+needs_runtime = pytest.mark.skipif(
+    not os.environ.get("LABIAL_RUNTIME"),
+    reason="LABIAL_RUNTIME names no build of the run-time: cmake --build builds it as labial-python")
 
 #: Says a word with the bundled model and prints its frames' jaw; needs the library, the model and its names.
 PROGRAM = """\
@@ -52,7 +57,7 @@ def attributions() -> Dict[str, str]:
     of the dictionary, not from the headers that the packages' own notices are made of."""
     from labial.hearing.model import load as load_hearing
     from labial.tables.model import load
-    from labial.words.notice import NOTICE
+    from labial.words.dictionary import NOTICE
 
     found = {"words_en": NOTICE}
     for path in (SOURCE / "export" / "models").glob("*.npz"):

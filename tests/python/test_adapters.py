@@ -16,11 +16,10 @@ import elevenlabs
 import labial
 from avatars import add_skeleton, document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser, Page, served
-from bundlers import MISSING, install, tools
 from labial.__main__ import main
 from labial.rig import description_of
 from models import lab
-from npm import package
+from npm import TOOLS_MISSING, install, package, tools
 from packages import SOURCE
 from pages import parse
 from test_animation import APPLE
@@ -28,7 +27,7 @@ from test_mouths import SAY, say
 
 PAGE = SOURCE / "docs" / "adapters.md"
 BROWSER = THREE_D
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING),
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING),
               pytest.mark.skipif(not CHROMIUM, reason=REASON),
               pytest.mark.skipif(not SAY, reason="LABIAL_SAY does not name the built labial-say")]  # fmt: skip
 

@@ -19,8 +19,7 @@ from labial.corpus.formats import SOUNDS
 from labial.files.faps import FAP_COLUMNS
 from labial.reference.fade import EASE
 from models import write_motion
-from packages import CC, CXX, SOURCE, run, warnings
-from runtime import needs_runtime
+from packages import CC, CXX, SOURCE, needs_runtime, run, warnings
 
 pytestmark = needs_runtime
 

@@ -26,8 +26,7 @@ from labial.bake.track import as_bytes
 from labial.errors import LabialError
 from labial.rig.description import read
 from labial.rig.table import convert
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 CC = os.environ.get("LABIAL_CC", "")
 pytestmark = needs_runtime

@@ -15,14 +15,12 @@ import pytest
 import elevenlabs
 import labial
 from browser import CHROMIUM, REASON, Browser, Page, served
-from bundlers import MISSING, node
-from npm import package
-from packages import SOURCE
+from npm import TOOLS_MISSING, node, package
+from packages import SOURCE, needs_runtime
 from pages import parse
-from runtime import needs_runtime
 
 pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(not CHROMIUM, reason=REASON),
-              pytest.mark.skipif(bool(MISSING), reason=MISSING)]  # fmt: skip
+              pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)]  # fmt: skip
 
 TEXT = "Mama may go. Papa saw a boat."
 FPS = 50

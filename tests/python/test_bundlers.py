@@ -19,11 +19,10 @@ import pytest
 
 import labial
 from browser import Browser, served
-from bundlers import FOLDER, MISSING, install, node, tools
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
-from npm import package
+from npm import FOLDER, TOOLS_MISSING, install, node, package, tools
 from packages import SOURCE, run
 from pages import parse
 from test_npm import SAY, said
@@ -33,7 +32,7 @@ BUNDLERS = ("esbuild", "parcel", "rollup", "vite", "webpack")
 LEAVE = ("esbuild", "rollup")
 WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil\n"
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING),
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING),
               pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64",
                                  reason="needs x86-64 Linux: npm has node as a package of each platform")]  # fmt: skip
 

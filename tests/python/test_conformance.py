@@ -18,8 +18,8 @@ from labial.reference.stream import ARTICULATION_MAX, DURATION_MAX, synthesise
 from labial.reference.tables import ExportedTables
 from labial.tables.quantise import ExportedModel, quantise
 from models import random_model, streams
+from packages import needs_runtime
 from regenerate import bundled_models, deviations, library_frames
-from runtime import needs_runtime
 from scripts import Frames, Part, Push, Script, as_c, digest, read, read_frames
 
 HERE = Path(__file__).resolve().parents[1] / "conformance"

@@ -21,8 +21,7 @@ import pytest
 import labial
 import test_esp32_hear
 from labial.rig.description import read
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 from test_beside import HELLO, parse
 from test_esp32_hear import CC, CXX, FRAME, MS, STUBS, WARNINGS, fill, hunks, stub_options, value
 

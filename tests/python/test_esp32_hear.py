@@ -17,8 +17,7 @@ import numpy as np
 import pytest
 
 import labial
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 from test_hearing import voice
 
 CC, CXX = os.environ.get("LABIAL_CC", ""), os.environ.get("LABIAL_CXX", "")

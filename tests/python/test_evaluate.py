@@ -16,8 +16,7 @@ from labial.__main__ import main
 from labial.corpus import Episode, Segment
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.evaluate import protocol
-from labial.evaluate.baselines import trained
+from labial.evaluate import methods, protocol
 from labial.evaluate.material import Split, Timeline, Utterance, bands, make_splits, timeline, utterance, utterances
 from labial.evaluate.methods import METHODS, select
 from labial.evaluate.report import Cell, cell
@@ -70,12 +69,12 @@ def test_the_trained_rows_decode_as_they_say(corpus) -> None:
     material = utterances(corpus, SPEECH, 50)
     training = Training(material[:8], SPEECH, 50, 0)
     given = material[9].timeline
-    for fit, name, synthesise in ((trained.fit_paper, "paper", published.synthesise),
-                                  (trained.fit_labial, "labial", stream.synthesise)):
+    for fit, name, synthesise in ((methods.fit_paper, "paper", published.synthesise),
+                                  (methods.fit_labial, "labial", stream.synthesise)):
         found = fit(training).predict(given)
         np.testing.assert_array_equal(found, synthesise(FloatTables(training.model(name)), given.stream))
     unlike = stream.synthesise(FloatTables(training.model("paper")), given.stream)
-    assert np.abs(trained.fit_paper(training).predict(given) - unlike).max() > 1
+    assert np.abs(methods.fit_paper(training).predict(given) - unlike).max() > 1
 
 
 @pytest.mark.slow

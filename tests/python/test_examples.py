@@ -25,8 +25,7 @@ from labial.errors import LabialError
 from labial.program import run
 from labial.rig.description import read
 from labial.rig.table import convert
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 from test_hearing import voice
 from test_runtime_hearing import write_wav
 from voices import Piper

@@ -12,8 +12,7 @@ import pytest
 
 import labial
 from labial.errors import LabialError
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 JAW = '[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\nslew = 60\nacceleration = 20\n'
 HOLD, EASE = 5, 6

@@ -27,7 +27,7 @@ from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
 from labial.fit.sentences import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
-from runtime import needs_runtime
+from packages import needs_runtime
 
 HERE = Path(__file__).parent
 

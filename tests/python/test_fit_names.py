@@ -18,13 +18,12 @@ from labial.fit.head import Head
 from labial.fit.kinds import known, shapes_for, unknown
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import Figures
-from labial.fit.names import plain
-from labial.fit.sides import of_head
+from labial.fit.names import of_head, plain
 from labial.fit.solve import FEATURES, Group, Solution, groups_of
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 from labial.rig.table import FAP_MAX, convert
-from runtime import needs_runtime
+from packages import needs_runtime
 
 VERTICES, TRIANGLES, SHAPES = made_head()
 #: How files spell sides.

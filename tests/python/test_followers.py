@@ -16,7 +16,6 @@ from labial.errors import ModelError
 from labial.evaluate.check import device_frames
 from labial.files.faps import CHANNELS, SIDES
 from labial.reference.fade import delivered
-from labial.reference.followers import complete, in_integers, interpolated
 from labial.reference.published import synthesise as published
 from labial.reference.stream import in_parts, synthesise
 from labial.reference.tables import ExportedTables, FloatTables
@@ -26,8 +25,11 @@ from labial.tables.followers import (
     FROM_CORNERS,
     VALUES,
     columns,
+    complete,
     every,
+    in_integers,
     integer_range,
+    interpolated,
     is_symmetric,
     mirrored,
     solved,
@@ -41,7 +43,7 @@ from labial.train.protrusion import table, with_protrusion
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, streams
-from runtime import needs_runtime
+from packages import needs_runtime
 
 ENDS = np.array([-60.0, 40.0])
 

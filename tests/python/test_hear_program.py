@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import labial
-from runtime import needs_runtime
+from packages import needs_runtime
 from test_animation import read_fap
 from test_hearing import voice
 from test_say import HEADER, command, run, say

@@ -19,8 +19,18 @@ from labial.errors import ModelError
 from labial.files.faps import SIDES
 from labial.hearing import convert, emit, integer, network
 from labial.hearing import features as front
-from labial.hearing.model import HearingModel, is_hearing, load, save, with_even_sides
-from labial.hearing.plans import CLASSES, CLOSED, PLANS, Memory, class_of
+from labial.hearing.model import (
+    CLASSES,
+    CLOSED,
+    PLANS,
+    HearingModel,
+    Memory,
+    class_of,
+    is_hearing,
+    load,
+    save,
+    with_even_sides,
+)
 from labial.hearing.quantise import quantise, rounded
 from labial.tables.model import load as load_speech
 from packages import CC, SOURCE

@@ -12,18 +12,17 @@ import pytest
 
 pytest.importorskip("soxr")
 
-from hearing_models import random_hearing  # noqa: E402
 from labial.__main__ import main  # noqa: E402
 from labial.evaluate import hearing, loudness  # noqa: E402
 from labial.files.faps import CHANNELS, FAP_NUMBERS  # noqa: E402
 from labial.files.frames import opening  # noqa: E402
-from labial.hearing import choose, distort, measures  # noqa: E402
+from labial.hearing import distort, measures  # noqa: E402
 from labial.hearing.features import FRAME, RATE  # noqa: E402
 from labial.hearing.measures import Figures, delay, measured, pooled  # noqa: E402
-from labial.hearing.model import save  # noqa: E402
-from labial.hearing.plans import CLASSES  # noqa: E402
+from labial.hearing.model import CLASSES, save  # noqa: E402
 from labial.hearing.prepared import Prepared  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from models import random_hearing  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 
 SIL, M, AA = (CLASSES.index(name) for name in ("SIL", "M", "AA"))
 
@@ -114,14 +113,14 @@ def test_what_is_best_is_chosen() -> None:
                         random.normal(scale=60, size=(140, CHANNELS)).astype(np.int16),
                         random.choice([M, AA, SIL], size=140).astype(np.uint8), lengths, np.array([True, True]))
     empty = prepared.part(False)
-    found = choose.choose(model, [empty, prepared], np.array([0.5, 0.5]))
-    assert found == choose.choose(model, [prepared], np.array([1.0]))
+    found = measures.choose(model, [empty, prepared], np.array([0.5, 0.5]))
+    assert found == measures.choose(model, [prepared], np.array([1.0]))
     assert found.edges[0] < found.edges[1] and f"closes from {found.edges[0]:g}" in str(found)
     better = Figures(0.8, 0.7, 0.9, 0.05, 1.0)
     for worse in (better._replace(opening=0.7), better._replace(closed=0.8), better._replace(false=0.2),
                   better._replace(jerk=1.3)):
-        assert choose.worth(worse) < choose.worth(better)
-    assert choose.worth(better._replace(false=0.0, jerk=0.5)) == choose.worth(better)
+        assert measures.worth(worse) < measures.worth(better)
+    assert measures.worth(better._replace(false=0.0, jerk=0.5)) == measures.worth(better)
 
 
 # ---- The evaluation

@@ -15,8 +15,6 @@ import pytest
 pytest.importorskip("soxr")
 
 from browser import CHROMIUM, REASON, Browser, Page, served  # noqa: E402
-from bundlers import MISSING, tools  # noqa: E402
-from hearing_models import random_hearing  # noqa: E402
 from labial.__main__ import main  # noqa: E402
 from labial.errors import LabialError  # noqa: E402
 from labial.evaluate import others  # noqa: E402
@@ -25,7 +23,9 @@ from labial.files.frames import opening  # noqa: E402
 from labial.hearing.features import RATE  # noqa: E402
 from labial.hearing.model import save  # noqa: E402
 from labial.runtime.render import render  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from models import random_hearing  # noqa: E402
+from npm import TOOLS_MISSING, tools  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 
 needs_node = pytest.mark.skipif(not shutil.which("node"), reason="needs node: install the Debian package nodejs")
 needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)
@@ -210,7 +210,7 @@ def sound_of(page: Page, samples: np.ndarray) -> None:
 def page(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("site")
     (folder / "index.html").write_text('<!doctype html><link rel="icon" href="data:,">')
-    if not MISSING:
+    if not TOOLS_MISSING:
         (folder / "node_modules").symlink_to(tools() / "node_modules")
     with served(folder) as address, Browser(tmp_path_factory.mktemp("profile") / "p") as browser:
         yield browser.page(f"{address}/index.html")
@@ -236,7 +236,7 @@ def test_levels_are_chromiums(page: Page) -> None:
 @pytest.mark.slow
 @needs_node
 @needs_chromium
-@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+@pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)
 def test_headaudio_is_chromiums(page: Page) -> None:
     """The package's weights in two seconds, by its worklet in Chromium and by its files under node."""
     samples = others.in_browser(vowels(2.0))

@@ -25,7 +25,7 @@ from labial.hearing import targets  # noqa: E402
 from labial.hearing.espeak import closure, phonemes  # noqa: E402
 from labial.hearing.speech_corpus import Written, read_sentences, write_corpus  # noqa: E402
 from labial.hearing.voices import Spoken, speak  # noqa: E402
-from runtime import needs_runtime  # noqa: E402
+from packages import needs_runtime  # noqa: E402
 from test_speak import REST, TEXT, sound_and_motion  # noqa: E402
 
 needs_flite = pytest.mark.skipif(not shutil.which("flite"), reason="the Debian package flite is not installed")

@@ -11,7 +11,7 @@ import pytest
 
 import labial
 from labial.integrations.lips import Lips
-from runtime import needs_runtime
+from packages import needs_runtime
 
 pytestmark = needs_runtime
 RATE = 24000

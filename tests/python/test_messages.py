@@ -26,9 +26,8 @@ from labial.corpus.service_files import read
 from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
-from packages import CC, SOURCE
-from runtime import needs_runtime
-from services import SAMPLES
+from messages import SAMPLES
+from packages import CC, SOURCE, needs_runtime
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
 

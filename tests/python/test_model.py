@@ -19,8 +19,7 @@ from labial.tables import emit
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
 from models import archive, members_of, random_model, streams, without_floors
-from packages import CC, SOURCE, run, warnings
-from runtime import needs_runtime
+from packages import CC, SOURCE, needs_runtime, run, warnings
 
 
 def build(folder: Path, *files: str) -> Path:

@@ -170,7 +170,7 @@ def test_redundant_names_are_found_without_their_entry(phone_set) -> None:  # no
 
 
 def espeak_labels() -> dict[str, str]:
-    """Every label that espeak-ng emits, and its phoneme or - (tests/labels/README.md)."""
+    """Every label that espeak-ng emits, and its phoneme or - (tests/labels/espeak_labels.py)."""
     lines = (SOURCE / "tests/labels/espeak.tsv").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "label\tphoneme\tlanguages"
     rows = [line.split("\t") for line in lines[1:]]

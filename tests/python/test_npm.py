@@ -27,10 +27,9 @@ from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
 from labial.rig import FACES, description_of
+from messages import SAMPLES
 from npm import MISSING, answered, package
-from packages import SOURCE, run
-from runtime import needs_runtime
-from services import SAMPLES
+from packages import SOURCE, needs_runtime, run
 from test_hearing import voice
 
 SAY = os.environ.get("LABIAL_SAY", "")

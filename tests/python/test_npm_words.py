@@ -12,10 +12,9 @@ import labial
 from labial.corpus.formats import read_timings
 from labial.corpus.words import PLAIN, Pronunciation, pronunciation
 from labial.errors import DataError, LabialError
-from messages import NAMES, PIECES, drawn_messages
+from messages import NAMES, PIECES, SAMPLES, drawn_messages
 from npm import answered
-from runtime import needs_runtime
-from services import SAMPLES
+from packages import needs_runtime
 from test_npm import MALFORMED, drawn_json
 
 pytestmark = needs_runtime

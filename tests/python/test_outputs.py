@@ -15,7 +15,6 @@ from typing import Dict, List
 
 import pytest
 
-import labial.evaluate.run  # noqa: F401, before a test patches what it imports
 from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
@@ -181,7 +180,7 @@ def test_folders_and_options_are_checked_before_the_work(given: Path, monkeypatc
     def late(*_: object, **__: object) -> None:
         raise AssertionError("the work began")
 
-    for name in ("labial.corpus.read_corpora", "labial.evaluate.run.read_corpora", "labial.tables.model.load"):
+    for name in ("labial.corpus.read_corpora", "labial.tables.model.load"):
         monkeypatch.setattr(name, late)
     for arguments, complaint in (
         (["evaluate", "corpus", "-o", "a.lab"], "a.lab: not a folder"),

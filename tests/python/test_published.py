@@ -19,8 +19,7 @@ from labial.__main__ import main
 from labial.bake.source import Source, read_track
 from labial.corpus.folder import read_frames
 from labial.corpus.phonesets import PHONE_SETS, SPEECH
-from labial.evaluate import choices, departures
-from labial.evaluate.baselines import trained
+from labial.evaluate import choices, departures, methods
 from labial.evaluate.choices import CHOICES, Choice
 from labial.evaluate.departures import DEPARTURES
 from labial.evaluate.material import utterances
@@ -361,7 +360,7 @@ def test_the_first_row_is_the_published_method(corpus, training) -> None:
     given = [item.timeline for item in utterances(corpus[11:], SPEECH, 50)]
     motion = choices._motion(CHOICES["speech"][0], training, given)
     for frames, item in zip(motion, given):
-        np.testing.assert_array_equal(frames, trained.fit_paper(training).predict(item))
+        np.testing.assert_array_equal(frames, methods.fit_paper(training).predict(item))
 
 
 @pytest.mark.slow

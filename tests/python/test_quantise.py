@@ -17,8 +17,7 @@ from labial.reference.stream import DURATION_MAX
 from labial.reference.trajectory import WINDOW
 from labial.reference.viterbi import LAG
 from labial.rig import table
-from labial.rig.description import CURVE_POINTS
-from labial.rig.gestures import SOURCES
+from labial.rig.description import CURVE_POINTS, SOURCES
 from labial.tables import emit, fixed
 from labial.tables.fixed import (
     PULL_MAX,

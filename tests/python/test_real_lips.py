@@ -11,7 +11,6 @@ from typing import Any, Dict, List, Tuple
 import numpy as np
 import pytest
 
-from hearing_models import random_hearing
 from labial.__main__ import main
 from labial.errors import DataError
 from labial.evaluate import real_lips
@@ -20,8 +19,8 @@ from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.frames import write_csv
 from labial.hearing.features import FLOOR, RATE, log_energies
 from labial.hearing.model import load, save
-from packages import SOURCE
-from runtime import needs_runtime
+from models import random_hearing
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 

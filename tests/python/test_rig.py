@@ -23,14 +23,12 @@ from labial.errors import LabialError
 from labial.fit.sentences import read_sentences
 from labial.rig import table
 from labial.rig.animation import FORMATS
-from labial.rig.description import read
-from labial.rig.gestures import SOURCES
+from labial.rig.description import SOURCES, read
 from labial.rig.table import FAP_MAX, convert, expected
-from labial.runtime.frame import Frame
 from labial.runtime.rig import Rig
+from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
-from packages import CC, CXX, SOURCE, run, warnings
-from runtime import needs_runtime
+from packages import CC, CXX, SOURCE, needs_runtime, run, warnings
 
 FACES = SOURCE / "examples" / "faces"
 #: Descriptions whose tables are kept, with the tables' folder; Python reads those of examples/pi, beside and

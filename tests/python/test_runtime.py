@@ -3,6 +3,7 @@ the same bytes as C."""
 
 from __future__ import annotations
 
+import functools
 import gc
 import os
 import subprocess
@@ -18,16 +19,35 @@ import pytest
 
 import labial
 from labial.errors import LabialError, StreamError
-from runtime import conformance_frames, conformance_scripts, needs_runtime
+from packages import SOURCE, needs_runtime
+from regenerate import bundled_models
 from runtime_player import FEEDS, play
+from scripts import Frames, read, read_frames
 
 pytestmark = needs_runtime
 
+CONFORMANCE = SOURCE / "tests" / "conformance"
 WORD: List[Tuple[Any, float]] = [("M", 70), ("AY", 160), ("B", 60), ("EY", 110), ("SIL", 100)]
 
 
 def frames_of(stream: labial.Stream) -> List[Tuple[int, ...]]:
     return [frame.faps for frame in stream]
+
+
+@functools.cache
+def conformance_scripts() -> List[Dict[str, Any]]:
+    """``streams.txt`` as runtime_player.py takes it."""
+    return [{"name": script.name,
+             "parts": [{"pushes": [[push.model, push.phoneme, push.milliseconds] for push in part.pushes],
+                        "cancel": part.cancel, "again": part.again, "articulation": part.articulation}
+                       for part in script.parts]}
+            for script in read(CONFORMANCE / "streams.txt", bundled_models())]
+
+
+@functools.cache
+def conformance_frames() -> Frames:
+    """``frames.txt``, which test_conformance.py holds to the float64 reference."""
+    return read_frames((CONFORMANCE / "frames.txt").read_text(encoding="ascii"))
 
 
 # ---- What is imported

@@ -27,8 +27,7 @@ from labial.hearing.model import load
 from labial.hearing.quantise import HearingTables, quantise
 from labial.runtime.hearing import models
 from labial.tables.visemes import VISEME_OF, VISEMES
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 from test_hearing import voice
 
 NAMES = ("hear_small", "hear_large", "hear_host", "hear_ahead")

@@ -27,10 +27,9 @@ from labial.tables.emit import blob
 from labial.tables.model import load, save
 from labial.tables.phones import read_stream
 from labial.tables.quantise import ExportedModel, quantise
+from messages import SAMPLES
 from models import random_model
-from packages import SOURCE
-from runtime import needs_runtime
-from services import SAMPLES
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 

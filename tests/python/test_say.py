@@ -22,8 +22,7 @@ import labial
 from labial.__main__ import main
 from labial.see.motion import read_bands
 from models import lab
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 from test_hearing import voice
 from test_timings import FILES, PHRASE, SEEDS, SENTENCE, damaged
 

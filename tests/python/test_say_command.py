@@ -18,7 +18,7 @@ from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
 from models import random_model
-from runtime import needs_runtime
+from packages import needs_runtime
 
 pytestmark = needs_runtime
 

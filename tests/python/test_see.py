@@ -14,7 +14,6 @@ import pytest
 
 from avatars import TRUE, document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser
-from bundlers import NPM, tools
 from labial.__main__ import main
 from labial.errors import DataError
 from labial.files import limits
@@ -25,6 +24,7 @@ from labial.see.motion import read_bands, read_fap, read_motion, read_motions
 from labial.see.page import page
 from labial.see.player import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER
 from models import write_motion
+from npm import NPM, tools
 
 HEADER = ",".join(("time", *FAP_COLUMNS))
 LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"

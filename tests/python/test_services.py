@@ -20,8 +20,8 @@ from labial.corpus.services import SERVICES
 from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
 from labial.see.motion import read_bands
-from runtime import needs_runtime
-from services import SAMPLES
+from messages import SAMPLES
+from packages import needs_runtime
 
 pytestmark = needs_runtime
 #: Samples that tell no ends of words, that tell phonemes, and that tell characters.

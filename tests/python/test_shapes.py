@@ -17,7 +17,7 @@ from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.reference.shape import choose, shapes
 from labial.reference.stream import synthesise, targets
 from labial.reference.tables import FloatTables
-from labial.tables.amplitude import mean_pose, widened
+from labial.tables.model import mean_pose, widened
 from labial.train.expression import AMPLITUDE, floors, gains
 from labial.train.recordings import Recording
 from labial.train.shapes import (

@@ -15,16 +15,14 @@ import pytest
 
 import labial
 from browser import CHROMIUM, REASON, Browser, Page
-from bundlers import MISSING, install, node, tools
 from labial.hearing import espeak
-from npm import NODE, answered, package
-from packages import SOURCE, run
+from npm import NODE, TOOLS_MISSING, answered, install, node, package, tools
+from packages import SOURCE, needs_runtime, run
 from pages import parse
-from runtime import needs_runtime
 
 EXAMPLE = SOURCE / "examples" / "speak-page"
 needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)
-needs_tools = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+needs_tools = pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)
 
 #: How fast the page is made to speak.
 SPEED = 4

@@ -27,7 +27,7 @@ from labial.files.frames import CSV_HEAD
 from labial.tables.model import save
 from labial.tables.phones import read_stream
 from models import archive, members_of, random_model, write_motion
-from runtime import needs_runtime
+from packages import needs_runtime
 from test_cli import FACE, LAB, Told, corpus, limited
 from test_record import LAB as TALK
 from test_record import talking, turned

@@ -24,7 +24,7 @@ from labial.tables.model import load
 from labial.tables.phones import drawn_streams, read_stream
 from labial.tables.quantise import quantise
 from models import lab
-from runtime import needs_runtime
+from packages import needs_runtime
 
 Timings = List[Tuple[Any, float]]
 

@@ -20,9 +20,8 @@ from labial.corpus.phonesets import SPEECH
 from labial.corpus.timings import TOLERANCE, phoneme_segments
 from labial.errors import DataError, LabialError
 from labial.files.grammar import is_number, is_whole, lines_of, number, number_or_nan, read_bytes, read_text
-from packages import SOURCE
-from runtime import needs_runtime
-from services import SAMPLES
+from messages import SAMPLES
+from packages import SOURCE, needs_runtime
 from test_npm import read_by_node
 
 SEEDS = SOURCE / "tests" / "fuzz" / "seeds" / "fuzz_timings"

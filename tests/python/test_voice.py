@@ -17,10 +17,10 @@ import pytest
 
 import labial
 from labial.core.words import OwnWords
+from messages import SAMPLES
 from oracle import Plan, rested, times
+from packages import needs_runtime
 from regenerate_voices import SOUNDS, WORDS
-from runtime import needs_runtime
-from services import SAMPLES
 
 pytestmark = needs_runtime
 

@@ -21,8 +21,7 @@ import labial
 import player
 import stand_in
 from labial.errors import LabialError
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 EXAMPLES = SOURCE / "examples" / "voices"

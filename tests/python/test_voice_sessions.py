@@ -16,9 +16,8 @@ from labial.files.faps import CHANNELS
 from messages import NAMES, PIECES, drawn_messages
 from npm import answered
 from oracle import Oracle, Shown, sessions, summary, times
-from packages import SOURCE
+from packages import SOURCE, needs_runtime
 from regenerate_voices import SESSIONS, frames_text
-from runtime import needs_runtime
 from test_npm import drawn_json
 
 pytestmark = needs_runtime

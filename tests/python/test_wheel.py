@@ -25,8 +25,8 @@ import labial
 import wheels
 from labial.core import library
 from packages import CC, CMAKE, SOURCE, attributions, run, single_spaced
-from runtime import conformance_frames, conformance_scripts
 from scripts import digest
+from test_runtime import conformance_frames, conformance_scripts
 
 #: What a build needs beside the compiler; a bare environment has nothing else, and no ninja.
 TOOLS = ("cmake", "make", "sh", "as", "ld")

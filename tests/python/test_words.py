@@ -18,8 +18,7 @@ from labial.corpus.phonesets import ARPABET
 from labial.errors import DataError, ModelError
 from labial.words import alignment, decoder, dictionary, emit, packing, tables, text, times, training
 from labial.words.questions import Asked, answer, features
-from packages import CC, SOURCE
-from runtime import needs_runtime
+from packages import CC, SOURCE, needs_runtime
 
 TRAINED = SOURCE / "export" / "models" / "words_en.npz"
 SPOKEN = Path(__file__).with_name("spoken.tsv")

@@ -18,8 +18,7 @@ from labial.corpus import languages
 from labial.corpus import words as spoken
 from labial.corpus.words import Pronunciation, Word, timings_of, words_of_characters
 from labial.errors import LabialError, StreamError
-from packages import SOURCE
-from runtime import needs_runtime
+from packages import SOURCE, needs_runtime
 
 pytestmark = needs_runtime
 needs_espeak = pytest.mark.skipif(not shutil.which("espeak-ng"), reason="no espeak-ng: install the Debian package")

@@ -11,10 +11,8 @@ from labial.bake.source import RATE
 from labial.errors import DataError
 from labial.files.c import rows, written_by
 from labial.files.frames import spans, whole_faps
-from labial.rig.description import Output, Rig
-from labial.rig.gestures import GESTURES
+from labial.rig.description import GESTURES, Output, Rig, make_unit
 from labial.rig.table import TableOutput
-from labial.rig.units import make_unit
 from labial.runtime.rig import Rig as Face
 
 #: LABIAL_PLAYER_FORMAT of labial_player.h.

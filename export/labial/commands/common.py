@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
-from labial.files.arguments import number, positive
 from labial.files.faps import CHANNELS
-from labial.files.grammar import read_text
+from labial.files.grammar import finite, positive, read_text
 from labial.files.outputs import writing
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ def add_fps(command: argparse.ArgumentParser) -> None:
 
 def add_talker_variance(command: argparse.ArgumentParser) -> None:
     """``--talker-variance``; see :mod:`labial.train.talkers`."""
-    command.add_argument("--talker-variance", type=number, metavar="V", help="--method labial: learn what talkers "
+    command.add_argument("--talker-variance", type=finite, metavar="V", help="--method labial: learn what talkers "
                          "share and let each stray from it, by this variance relative to that of what is shared (1 "
                          "is what was chosen on talkers left out); a corpus's weight then counts for each of its "
                          "talkers")

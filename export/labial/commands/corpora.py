@@ -9,7 +9,7 @@ import sys
 from labial.commands.common import add_kind, add_labels, add_quiet, add_said, add_source, put, said, shows_progress
 from labial.defaults import EPISODES, WHICH_FACE
 from labial.errors import needs
-from labial.files.arguments import number, positive, seed
+from labial.files.grammar import finite, positive, seed
 
 # ---- timings ---------------------------------------------------------------------------------------------------------
 
@@ -19,7 +19,7 @@ def add_timings(command: argparse.ArgumentParser) -> None:
     command.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
     add_source(command)
     add_labels(command)
-    command.add_argument("--offset-ms", type=number, default=0.0, metavar="MS", help="added to all times: over 0 for a "
+    command.add_argument("--offset-ms", type=finite, default=0.0, metavar="MS", help="added to all times: over 0 for a "
                          "voice that reports them too early (0)")
     command.add_argument("--language", default="en", help="of words and characters; another than en is pronounced by "
                          "espeak-ng, as it calls a language or a voice (en)")
@@ -105,12 +105,12 @@ def add_record(command: argparse.ArgumentParser) -> None:
                          "folders of them, each with its phoneme timings (NAME.lab, .TextGrid, ...) beside it")
     command.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
     add_kind(command)
-    command.add_argument("--fps", type=number, metavar="RATE", help="frames per second, where the files do not tell")
+    command.add_argument("--fps", type=finite, metavar="RATE", help="frames per second, where the files do not tell")
     command.add_argument("--size", metavar="WIDTHxHEIGHT", help="of the video in pixels, where coordinates are shares "
                          "of it and the files do not tell")
-    command.add_argument("--offset", type=number, default=0.0, metavar="MS", help="how much later than its sound the "
+    command.add_argument("--offset", type=finite, default=0.0, metavar="MS", help="how much later than its sound the "
                          "picture is, negative where it is earlier (0); an estimate is printed")
-    command.add_argument("--cutoff", type=number, default=12.0, metavar="HZ",
+    command.add_argument("--cutoff", type=finite, default=12.0, metavar="HZ",
                          help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
 
 
@@ -156,7 +156,7 @@ def add_speech_corpus(command: argparse.ArgumentParser) -> None:
                          "line, or metadata.csv of LJ Speech")
     command.add_argument("--voices", required=True, nargs="+", metavar="VOICE", help="flite:slt, festival:kal_diphone, "
                          "espeak:en-us+f3 and so on; they take turns")
-    command.add_argument("--minutes", type=number, default=30.0, help="of sound in all (30)")
+    command.add_argument("--minutes", type=finite, default=30.0, help="of sound in all (30)")
     command.add_argument("--seed", type=seed, default=0)
     add_quiet(command)
 

@@ -1,13 +1,23 @@
-"""``labial evaluate``: all methods against human motion."""
+"""``labial evaluate`` and ``labial evaluate-hear``: all methods against human motion; lips from sound against lips in
+videos, or against lips from true timings."""
 
 from __future__ import annotations
 
 import argparse
+import contextlib
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Dict, List, Optional, Sequence
 
-from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, shows_progress
+from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add_talker_variance, put, shows_progress
 from labial.defaults import SPLITS
 from labial.errors import LabialError, needs
-from labial.files.arguments import positive, seed
+from labial.files.grammar import positive, seed
+
+if TYPE_CHECKING:
+    from labial.evaluate.material import Options, Outcome
 
 
 def add_evaluate(command: argparse.ArgumentParser) -> None:
@@ -37,7 +47,6 @@ def run_evaluate(options: argparse.Namespace) -> int:
     """Evaluates, writes the report and prints its first table."""
     with needs("evaluating", "train,evaluate"):
         from labial.evaluate.material import Options
-        from labial.evaluate.run import run as evaluated
 
     words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
     if words and options.leave_out_talkers:
@@ -47,7 +56,130 @@ def run_evaluate(options: argparse.Namespace) -> int:
     asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
                     options.leave_out_talkers, talker_variance=options.talker_variance,
                     first_corpus_alone=options.first_corpus_alone)
-    for path in evaluated(options.corpus, options.output, asked, jobs=options.jobs, engine=options.engine,
-                          progress=shows_progress(options)):
+    for path in _evaluated(options.corpus, options.output, asked, options.jobs, options.engine,
+                           shows_progress(options)):
         print(path)
     return 0
+
+
+def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int, engine: Optional[str],
+               progress: bool) -> List[Path]:
+    """Evaluates and writes the report into the folder `output`; returns what was written. Finished splits are stored
+    there until the report is written, and reused."""
+    with needs("evaluating", "train,evaluate"):
+        from labial.evaluate import plots, report
+        from labial.evaluate.kept import remove_kept
+        from labial.evaluate.methods import select
+        from labial.evaluate.protocol import evaluate
+        from labial.train.pipeline import check_jobs
+        from labial.train.talkers import check_variance
+        from labial.train.workers import Workers
+    from labial.corpus import read_corpora
+    from labial.corpus.laughter import is_synthetic
+    from labial.files.outputs import check_folder, folder
+
+    select(options.methods)  # before the corpora are read
+    check_folder(output)
+    check_jobs(jobs)
+    check_variance(options.talker_variance)
+    Workers(jobs, False, engine)
+    options = replace(options, synthetic=is_synthetic(corpora[0]))
+    first, *others = read_corpora(corpora, options.kind, distinct=True)
+    further = [episode for corpus in others for episode in corpus]
+    outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress,
+                        folder=Path(output))
+    with folder(output) as made:
+        drawn = plots.write(outcomes, options, made)
+        written = [path.name for path in report.write(outcomes, options, made, drawn)]
+    remove_kept(Path(output))
+    if options.leave_out_talkers:
+        print(report.talkers_table(outcomes, report.methods_of(outcomes)))
+    print(report.caption("Table 1", "diff", options))
+    print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
+    print(_processor_time(outcomes))
+    return [Path(output) / name for name in (*written, *drawn)]
+
+
+def _processor_time(outcomes: Sequence[Outcome]) -> str:
+    """Processor seconds per split, for all methods and each; for the terminal, since they differ in each run."""
+    total: Dict[str, float] = {}
+    for item in outcomes:
+        for method, seconds in item.seconds.items():
+            total[method] = total.get(method, 0.0) + seconds / len(outcomes)
+    each = ", ".join(f"{method} {seconds:.1f}" for method, seconds in total.items())
+    return f"processor time per split: {sum(total.values()):.1f} s ({each})"
+
+
+def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
+    """A model, and the sounds, conditions and methods to judge."""
+    command.add_argument("model", metavar="HEAR.npz")
+    command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
+    command.add_argument("--lips", nargs="+", action="append", metavar="CORPUS", help="judge by lips that were "
+                         "measured in video: corpora, as for train, with the sound beside each episode or with "
+                         "energies.npz; once more for another group of them")
+    command.add_argument("-o", "--output", metavar="TABLE.md", help="standard output without it")
+    command.add_argument("--voices", nargs="*", metavar="VOICE", help="synthesisers' voices that say the bundled "
+                         "sentences, as for speech-corpus (four that no bundled network was trained on)")
+    command.add_argument("--conditions", metavar="A,B,...", help="of clean, -40 dBFS, white noise 20 dB and so on; all "
+                         "of them by default")
+    command.add_argument("--methods", metavar="A,B,...", help="of network, integers, loudness, \"loudness and "
+                         "crossings\" (these; with --lips phonemes and \"phonemes and sound\" in place of "
+                         "the last), and other projects: wawa-lipsync, \"wawa-lipsync unsmoothed\", headaudio, "
+                         "pocketsphinx")
+    command.add_argument("--npm", metavar="FOLDER", help="where npm installed wawa-lipsync and @met4citizen/headaudio")
+    command.add_argument("--most", type=positive, help="clips of each folder (all)")
+    command.add_argument("--cache", metavar="FOLDER", help="for alignments")
+    command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
+
+
+def run_evaluate_hear(options: argparse.Namespace) -> int:
+    """Prints a table."""
+    from labial.files.outputs import check
+
+    check(options.output)
+    put(_by_lips(options) if options.lips else _by_timings(options), options.output)
+    return 0
+
+
+def _by_lips(options: argparse.Namespace) -> str:
+    with needs("evaluating", "hear"):
+        from labial.evaluate import real_lips
+    from labial.hearing.model import load
+
+    for name in ("folder", "voices", "conditions", "npm", "most"):
+        if getattr(options, name):
+            raise LabialError(f"{'FOLDER' if name == 'folder' else '--' + name} does not go with --lips")
+    own = real_lips.methods(load(options.model))
+    judged = {name: own[name] for name in _chosen(options.methods, "--methods", list(own))}
+    return real_lips.table(list(real_lips.evaluated([real_lips.group(item) for item in options.lips], judged)))
+
+
+def _by_timings(options: argparse.Namespace) -> str:
+    with needs("evaluating", "hear"):
+        from labial.evaluate import hearing, others
+    from labial.hearing.model import load
+
+    model = load(options.model)
+    own = hearing.methods(model)
+    names = _chosen(options.methods, "--methods", list(own), list(others.PACKAGES))
+    chosen = {name: own[name] if name in own else others.method(name, options.npm) for name in names}
+    conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))
+    with contextlib.nullcontext(options.cache) if options.cache else tempfile.TemporaryDirectory() as cache:
+        sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0)
+                for folder in options.folder]
+        voices = hearing.VOICES if options.voices is None else options.voices
+        sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]
+    if not sets:
+        raise LabialError("there is nothing to judge by: neither a folder nor a voice")
+    return hearing.table(list(hearing.evaluated(sets, chosen, conditions)))
+
+
+def _chosen(text: Optional[str], option: str, usual: List[str], more: Sequence[str] = ()) -> List[str]:
+    """The names in an option, of `usual` and `more`; without it the usual ones."""
+    if text is None:
+        return usual
+    names = [name.strip() for name in text.split(",")]
+    for name in names:
+        if name not in (*usual, *more):
+            raise LabialError(f"{option}: {name!r} is not one of {'; '.join((*usual, *more))}")
+    return names

@@ -28,7 +28,7 @@ def run_rig(options: argparse.Namespace) -> int:
     """Writes NAME.h, NAME.c and, unless --no-figure, NAME.svg; or the file of --calibrate or --json."""
     from labial.files.c import check_name
     from labial.files.outputs import folder
-    from labial.rig import calibrate, table, web
+    from labial.rig import calibrate, table
     from labial.rig.description import read
     from labial.see import figure
 
@@ -39,7 +39,7 @@ def run_rig(options: argparse.Namespace) -> int:
         print(calibrate.write(rig, options.output))
         return 0
     if options.json:
-        print(web.write(rig, options.output))
+        print(table.write_json(rig, options.output))
         return 0
     with folder(options.output) as made:
         paths = table.write(rig, made)

@@ -27,7 +27,7 @@ from typing import (
 from labial.commands.common import add_format, add_phones, add_said, format_of, said
 from labial.errors import DataError, LabialError, needs
 from labial.files import wav
-from labial.files.arguments import whole
+from labial.files.grammar import whole
 
 if TYPE_CHECKING:
     import numpy as np

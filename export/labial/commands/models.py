@@ -22,7 +22,7 @@ from labial.commands.common import (
 from labial.core.library import ARTICULATION_MAX
 from labial.defaults import PREDECESSORS
 from labial.errors import LabialError
-from labial.files.arguments import number, positive, whole
+from labial.files.grammar import finite, positive, whole
 from labial.tables.bundled import MODEL_HELP
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def add_export(command: argparse.ArgumentParser) -> None:
 
 def add_table_options(command: argparse.ArgumentParser) -> None:
     """Options of :func:`exported`."""
-    command.add_argument("--amplitude", type=number, default=1.0, metavar="FACTOR",
+    command.add_argument("--amplitude", type=finite, default=1.0, metavar="FACTOR",
                          help="widen (over 1) or calm (below 1) the motion about its mean; 1 is the least error (1)")
     command.add_argument("--predecessors", type=positive, default=PREDECESSORS,
                          help=f"transitions kept into each state ({PREDECESSORS})")
@@ -100,8 +100,7 @@ def add_table_options(command: argparse.ArgumentParser) -> None:
 
 def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedModel]:
     """The float model that the options name, with their amplitude, and its exported tables."""
-    from labial.tables.amplitude import widened
-    from labial.tables.model import load
+    from labial.tables.model import load, widened
     from labial.tables.quantise import quantise
 
     model, factor = load(options.model), options.amplitude

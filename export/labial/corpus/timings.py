@@ -18,8 +18,8 @@ from itertools import islice
 from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
 
 from labial.core import lines
+from labial.core.guard import SHORTEST
 from labial.core.lines import LAUGH
-from labial.core.numbers import SHORTEST
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import AUTO, PHONE_SETS, PhoneSet
 from labial.errors import DataError

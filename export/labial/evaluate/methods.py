@@ -1,4 +1,5 @@
-"""The methods by name, in the order of the tables."""
+"""The methods by name, in the order of the tables; the trained ones here: the published method and Labial in float64,
+and Labial in the C library."""
 
 from __future__ import annotations
 
@@ -8,9 +9,55 @@ from typing import Callable, List, Sequence, Tuple
 import numpy as np
 
 from labial.errors import LabialError
-from labial.evaluate.baselines import dominance, hmm, ridge, steps, trained
+from labial.evaluate.baselines import dominance, hmm, ridge, steps
+from labial.evaluate.check import device_frames
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Predictor, Training
+from labial.reference.synthesis import synthesise
+from labial.tables.model import Model
+from labial.tables.quantise import ExportedModel, quantise
+
+
+@dataclass(frozen=True)
+class Float:
+    """A model in the float64 reference of its method."""
+
+    model: Model
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13)."""
+        return synthesise(self.model, timeline.stream)
+
+
+@dataclass(frozen=True)
+class Device:
+    """A model's exported tables in the integer C library."""
+
+    exported: ExportedModel
+
+    def predict(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13)."""
+        return device_frames(self.exported, [timeline.stream])[0].astype(np.float64)
+
+
+def fit_paper(training: Training) -> Float:
+    """The published method, unit by unit."""
+    return Float(training.model("paper"))
+
+
+def fit_paper_normalised(training: Training) -> Float:
+    """The published method with features normalised before clustering."""
+    return Float(training.model("paper", normalise=True))
+
+
+def fit_labial(training: Training) -> Float:
+    """Labial, in floating point."""
+    return Float(training.model("labial"))
+
+
+def fit_device(training: Training) -> Device:
+    """Labial, as it runs on the device."""
+    return Device(quantise(training.model("labial"), "evaluated_model"))
 
 
 @dataclass(frozen=True)
@@ -31,10 +78,10 @@ METHODS: Tuple[Method, ...] = (
     Method("ridge_phonemes", "ridge, phoneme window", ridge.fit_phonemes),
     Method("ridge_classes", "ridge, class window + shapes", ridge.fit_classes),
     Method("hmm_synthesis", "HMM synthesis", hmm.fit),
-    Method("paper", "paper", trained.fit_paper),
-    Method("paper_normalised", "paper, normalised features", trained.fit_paper_normalised),
-    Method("labial", "Labial, float64", trained.fit_labial),
-    Method("device", "Labial, device", trained.fit_device),
+    Method("paper", "paper", fit_paper),
+    Method("paper_normalised", "paper, normalised features", fit_paper_normalised),
+    Method("labial", "Labial, float64", fit_labial),
+    Method("device", "Labial, device", fit_device),
 )
 
 

@@ -29,8 +29,7 @@ from labial.files.frames import opening, sampled
 from labial.hearing import integer, network, targets
 from labial.hearing.features import BANDS, FLOOR, FRAME, HOPS, log_energies
 from labial.hearing.measures import RATE
-from labial.hearing.model import HearingModel
-from labial.hearing.plans import CLASSES
+from labial.hearing.model import CLASSES, HearingModel
 from labial.hearing.quantise import quantise
 from labial.runtime.mixing import with_sound
 

@@ -18,7 +18,7 @@ from labial.corpus import read_corpus
 from labial.errors import LabialError
 from labial.evaluate.loss import channel_extent
 from labial.evaluate.material import utterances
-from labial.files.arguments import positive
+from labial.files.grammar import positive
 from labial.reference.published import viterbi
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import ExportedTables, Tables

@@ -17,7 +17,7 @@ from labial.errors import LabialError
 from labial.evaluate.material import Split, Timeline, Utterance, make_splits, utterances
 from labial.evaluate.measures import Judge, judged_frames
 from labial.evaluate.training import Training
-from labial.files.arguments import positive, seed
+from labial.files.grammar import positive, seed
 from labial.files.outputs import check, writing
 from labial.train.workers import Workers
 

@@ -5,12 +5,15 @@ Only blanks, tabs and CRs separate fields. A number is::
 
     [-] (digits [. [digits]] | . digits) [(e | E) [+ | -] digits]
 
-of the ASCII digits, as in the library's parser of timings (include/labial/timings.h).
+of the ASCII digits, as in the library's parser of timings (include/labial/timings.h). Numbers on a command line have
+the same grammar: :func:`whole`, :func:`finite`, `positive` and `seed` are types for :mod:`argparse`.
 """
 
 from __future__ import annotations
 
+import argparse
 import codecs
+import functools
 import math
 import os
 import re
@@ -143,3 +146,23 @@ def number_or_nan(path: PathLike, line: Optional[int], text: str, what: str = "v
 def shown(text: str) -> str:
     """`text` in quotes for a message: in one line, shortened if long."""
     return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+def whole(low: int, high: int, text: str) -> int:
+    """`text` as a whole number within `low` .. `high`; with both given, a type of :mod:`argparse`."""
+    value = int(text) if is_whole(text) else -1
+    if not low <= value <= high:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number within {low} .. {high}")
+    return value
+
+
+def finite(text: str) -> float:
+    """`text` as a finite number: a type of :mod:`argparse`."""
+    if not is_number(text) or math.isinf(float(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return float(text)
+
+
+#: On a command line: counts, up to any useful number; seeds, as NumPy and scikit-learn accept them.
+positive = functools.partial(whole, 1, 1_000_000)
+seed = functools.partial(whole, 0, 2**32 - 1)

@@ -22,10 +22,8 @@ from labial.fit.sentences import read_sentences
 from labial.fit.solve import FEATURES, Solution, solve
 from labial.program import one_line
 from labial.rig.animation import outputs
-from labial.rig.description import Rig, read
-from labial.rig.gestures import SOURCES
+from labial.rig.description import SOURCES, Rig, make_unit, read
 from labial.rig.table import holds
-from labial.rig.units import make_unit
 
 #: Intensities of the laughs that are solved for, in addition to the sentences.
 _LAUGHS = (0.5, 1.0)

@@ -15,8 +15,7 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.head import Head
-from labial.fit.names import plain, sided
-from labial.fit.sides import of_head
+from labial.fit.names import of_head, plain, sided
 from labial.fit.solve import FEATURES, Wishes
 from labial.rig.animation import LIVE_LINK
 from labial.tables.visemes import VISEMES

@@ -25,8 +25,8 @@ import numpy as np
 
 from labial.fit.head import Head
 from labial.fit.meaning import fap, rows
+from labial.fit.names import Pair, by_names
 from labial.fit.sentences import Motion
-from labial.fit.sides import Pair, by_names
 
 #: What an output may follow, in the names of a description; per side, with left and right alike.
 FEATURES: Tuple[str, ...] = ("jaw", "push_b_lip", "push_t_lip", "upper_lip", "lower_lip", "spread", "corner")

@@ -13,8 +13,7 @@ from torch import nn
 
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
-from labial.hearing.model import INPUTS, HearingModel
-from labial.hearing.plans import CLASSES, Memory, Plan
+from labial.hearing.model import CLASSES, INPUTS, HearingModel, Memory, Plan
 from labial.hearing.targets import Closure
 
 #: The largest shift and magnitude of an int8 weight in the library.

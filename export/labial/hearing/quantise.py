@@ -8,8 +8,7 @@ from typing import Tuple
 import numpy as np
 
 from labial.errors import ModelError
-from labial.hearing.model import HearingModel
-from labial.hearing.plans import Memory
+from labial.hearing.model import HearingModel, Memory
 
 #: LABIAL_HEAR_MODEL_FORMAT.
 FORMAT = 3

@@ -11,7 +11,7 @@ from labial.corpus.phonesets import SPEECH
 from labial.files.faps import CHANNELS, TOUCHING
 from labial.files.frames import opening
 from labial.hearing.features import FRAME, RATE
-from labial.hearing.plans import CLASSES, CLOSED, class_of
+from labial.hearing.model import CLASSES, CLOSED, class_of
 from labial.runtime.render import render
 
 #: Milliseconds of a frame.

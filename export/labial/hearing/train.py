@@ -19,14 +19,12 @@ import torch
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.hearing import targets
-from labial.hearing.augment import augmented, noises, white
-from labial.hearing.choose import Choice, choose
+from labial.hearing.distort import augmented, noises, white
 from labial.hearing.features import BANDS, FLOOR, HOPS, normalise_crops
 from labial.hearing.learner import Learner, model_of, restore
-from labial.hearing.lessons import lesson
-from labial.hearing.model import HearingModel, save, with_even_sides
-from labial.hearing.plans import CLASSES, CLOSED, PLANS
-from labial.hearing.prepared import Prepared
+from labial.hearing.measures import Choice, choose
+from labial.hearing.model import CLASSES, CLOSED, PLANS, HearingModel, save, with_even_sides
+from labial.hearing.prepared import Prepared, lesson
 
 #: Frames of a crop, and crops of a batch.
 LENGTH, BATCH = 200, 24

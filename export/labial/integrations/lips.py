@@ -8,8 +8,8 @@ from typing import Any, Deque, List, Optional, Tuple
 
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
 from labial.runtime.hearing import FPS, Hearing
+from labial.runtime.stream import Frame
 from labial.runtime.voice import Voice
 
 _logger = logging.getLogger("labial")

@@ -23,7 +23,7 @@ from livekit.agents.utils import is_given
 from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
 
 from labial.integrations.lips import Lips
-from labial.runtime.frame import Frame
+from labial.runtime.stream import Frame
 
 
 class LipsOutput(AudioOutput):

@@ -36,9 +36,9 @@ from pipecat.frames.frames import (
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
 
 from labial.integrations.lips import Lips
-from labial.runtime import frame as labial_frame
+from labial.runtime import stream
 
-Show = Callable[[labial_frame.Frame], Awaitable[None]]
+Show = Callable[[stream.Frame], Awaitable[None]]
 
 
 @dataclass

@@ -13,7 +13,6 @@ from typing import Optional, Union
 import numpy as np
 
 from labial.reference.contact import FRAMES, PARTED
-from labial.reference.followers import complete, in_integers, interpolated
 from labial.reference.shape import ShapeTables, choose, pairs_beside, shapes
 from labial.reference.viterbi import LAG, Chains, decode, normal_chains
 from labial.tables.fixed import (
@@ -29,7 +28,7 @@ from labial.tables.fixed import (
     weight_value,
     z_cost,
 )
-from labial.tables.followers import solved
+from labial.tables.followers import complete, in_integers, interpolated, solved
 from labial.tables.model import Model
 from labial.tables.quantise import ExportedModel
 

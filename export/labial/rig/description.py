@@ -1,4 +1,8 @@
-"""Reads a rig's description, a TOML file such as ``examples/faces/jaw.toml``; docs/servos.md explains its keys."""
+"""Reads a rig's description, a TOML file such as ``examples/faces/jaw.toml``; docs/servos.md explains its keys.
+
+Outputs have units, and inputs: the 13 FAPs by name, and a few named gestures. Servos are described in microseconds; the
+tables contain the units of the hardware.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +14,8 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tup
 
 from labial.errors import LabialError
 from labial.files import limits
-from labial.files.faps import CHANNELS
+from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
 from labial.files.toml import Table, meant, read_toml
-from labial.rig.gestures import SOURCES, Row
-from labial.rig.units import UNITS, Unit, make_unit
 from labial.tables.visemes import VISEMES
 
 #: Range of a servo's pulses, microseconds: wider than that of any common servo, narrow enough to detect typing errors.
@@ -28,6 +30,100 @@ _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum"
                 "deadband", "acceleration", "curve", "visemes")
 #: Points of a linkage's curve.
 CURVE_POINTS = (2, 9)
+
+#: A weight or a value for each of the 13 channels. Not an array, since the run-time reads rigs without numpy.
+Row = Tuple[float, ...]
+
+#: The PCA9685 divides its oscillator by its prescaler, and each period into 4096 ticks.
+_PCA9685_OSCILLATOR, _PCA9685_TICKS = 25e6, 4096
+_PCA9685_PRESCALE = (3, 255)
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The conversion of one microsecond (or weight, or plain unit) of the description to the tables."""
+
+    name: str
+    scale: float  #: table units per unit of the description
+    servo: bool  #: whether values are pulses
+    text: str  #: for comments
+    limit: Optional[int] = None  #: largest value of the hardware
+    prescale: Optional[int] = None  #: value of the PCA9685's prescale register
+
+
+UNITS = ("us", "quarter_us", "pca9685", "counts", "weight", "plain")
+
+
+def make_unit(name: str, parameter: float = 50.0) -> Unit:
+    """The unit `name`; `parameter` is the update frequency, Hz, of pca9685 or the timer clock, Hz, of counts."""
+    if name == "us":
+        return Unit(name, 1.0, True, "microseconds")
+    if name == "quarter_us":
+        return Unit(name, 4.0, True, "quarter microseconds (Maestro)", 16383)
+    if name == "pca9685":
+        low, high = (_PCA9685_OSCILLATOR / _PCA9685_TICKS / (prescale + 1) for prescale in reversed(_PCA9685_PRESCALE))
+        if not low <= parameter <= high:
+            least, most = math.ceil(100 * low) / 100, math.floor(100 * high) / 100
+            raise LabialError(f"{parameter:g} is not within {least:g} .. {most:g} Hz")
+        # Uses the period that the register produces, not the requested one.
+        prescale = round(_PCA9685_OSCILLATOR / (_PCA9685_TICKS * parameter)) - 1
+        tick = (prescale + 1) / _PCA9685_OSCILLATOR * 1e6
+        return Unit(name, 1.0 / tick, True, f"ticks of {tick:.2f} us (PCA9685 with prescale register {prescale}, "
+                                            f"{1e6 / tick / _PCA9685_TICKS:.2f} Hz)", _PCA9685_TICKS - 1, prescale)
+    if name == "counts":
+        if not 1e4 <= parameter <= 1e9:
+            raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
+        return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
+    if name == "weight":
+        return Unit(name, 1000.0, False, "weights, 1000 for 1", 1000)
+    return Unit(name, 1.0, False, "plain units")
+
+
+class Gesture(NamedTuple):
+    """A weighted sum of FAPs, and how far it goes in ordinary speech and laughter."""
+
+    weights: Row
+    reach: Optional[float]  #: FAP units of the sum at its full extent; None without a usual one
+
+
+def _weights(**named: float) -> Row:
+    return tuple(float(named.get(name, 0.0)) for name in FAP_COLUMNS)
+
+
+def _alone(channel: int) -> Row:
+    return tuple(float(k == channel) for k in range(CHANNELS))
+
+
+#: Named sums. The reaches are round numbers near the extremes of a spoken sentence and a laugh. The corners of a mouth
+#: sink as its jaw opens; `smile` compensates for this, so that open vowels do not look sad.
+GESTURES: Dict[str, Gesture] = {
+    "opening": Gesture(_weights(fap51=-1, fap52=-1), 600.0),
+    "jaw": Gesture(_weights(fap3=1), 400.0),
+    "upper_lip": Gesture(_weights(fap51=-1), 90.0),
+    "lower_lip": Gesture(_weights(fap52=-1), 560.0),
+    "smile": Gesture(_weights(fap53=0.25, fap54=0.25, fap59=0.25, fap60=0.25, fap3=0.2), 120.0),
+    "spread": Gesture(_weights(fap53=0.5, fap54=0.5), 100.0),
+    "rounding": Gesture(_weights(fap17=1, fap53=-0.5, fap54=-0.5), 200.0),
+}
+
+#: All names for ``from``: gestures, MPEG-4's names of FAPs, columns of a frames file.
+SOURCES: Mapping[str, Gesture] = {
+    **{name: Gesture(_alone(k), None) for names in (FAP_NAMES, FAP_COLUMNS) for k, name in enumerate(names)},
+    **GESTURES,
+}
+
+#: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth, and lips pressed on
+#: each other over a jaw that is half open, which shows whether a face can close in p, b, m.
+POSES: Dict[str, Row] = {
+    "mouth open": _weights(fap3=400, fap16=-240, fap52=-600, fap53=-15, fap54=-15, fap57=-490, fap58=-490, fap59=-120,
+                           fap60=-120),
+    "lips rounded": _weights(fap3=180, fap16=-100, fap17=150, fap51=50, fap52=-250, fap53=-55, fap54=-55, fap55=65,
+                             fap56=65, fap57=-210, fap58=-210, fap59=-150, fap60=-150),
+    "smile": _weights(fap3=40, fap16=-35, fap17=-35, fap51=-50, fap52=-30, fap53=105, fap54=105, fap55=-65, fap56=-65,
+                      fap59=130, fap60=130),
+    "lips closed": _weights(fap3=250, fap16=-130, fap51=85, fap52=-125, fap55=60, fap56=60, fap57=-105, fap58=-105,
+                            fap59=-50, fap60=-50),
+}
 
 
 class Numbers(NamedTuple):

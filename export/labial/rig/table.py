@@ -1,8 +1,9 @@
-"""A rig as the C table that ``labial/rig.h`` declares, and the float64 computation with which the C library is
-compared."""
+"""A rig as the C table that ``labial/rig.h`` declares and as JSON for pages, and the float64 computation to compare the
+C library with."""
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import textwrap
@@ -13,9 +14,8 @@ from typing import TYPE_CHECKING, Callable, List, Optional, Tuple, Union
 from labial.errors import DataError, ModelError
 from labial.files.c import check_name, written_by
 from labial.files.faps import FAP_NAMES, TOUCHING
-from labial.files.outputs import folder
-from labial.rig.description import Output, Rig
-from labial.rig.gestures import Row
+from labial.files.outputs import folder, writing
+from labial.rig.description import Output, Rig, Row
 from labial.tables.visemes import VISEMES
 
 if TYPE_CHECKING:
@@ -322,3 +322,32 @@ def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> List[Path]:
         for name, text in files.items():
             (made / name).write_bytes(text.encode("ascii"))
     return [Path(directory) / name for name in files]
+
+
+def json_text(rig: Rig) -> str:
+    """A rig of weights as the JSON that `labial.rig()` of the npm package reads: the numbers of the C table, by name.
+    Raises DataError for a rig of servos, whose limits of speed a page does not apply."""
+    if rig.unit.name != "weight":
+        raise DataError(rig.path, None, f'unit: --json is for faces of weights, "weight", not {rig.unit.name!r}')
+    outputs = {}
+    for output in convert(rig):
+        for key in ("slew", "deadband", "acceleration"):
+            if getattr(output, key):
+                raise DataError(rig.path, None, f"output.{output.name}.{key}: is for servos, not for --json")
+        outputs[output.name] = {
+            "weights": output.weights, "gain": output.gain, "neutral": output.neutral, "minimum": output.minimum,
+            "maximum": output.maximum, "invert": int(output.invert), "contact": int(output.closed is not None),
+            "closed": output.closed or 0, **({"curve": output.curve} if output.curve else {}),
+            **({"visemes": output.visemes} if output.visemes else {})}  # fmt: skip
+    rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outputs.items())
+    return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
+
+
+def write_json(rig: Rig, directory: Union[str, os.PathLike[str]]) -> Path:
+    """Writes NAME.json into `directory`; its path."""
+    content = json_text(rig)
+    path = Path(directory) / f"{rig.name}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with writing(path, "ascii") as out:
+        out.write(content)
+    return path

@@ -10,7 +10,7 @@ from array import array
 from itertools import chain
 from typing import Iterable, List, NamedTuple, Optional, Union
 
-from labial.core.numbers import whole
+from labial.core.guard import whole
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.rig import Faps, Rig, one_frame

@@ -7,9 +7,8 @@ import math
 import os
 from typing import Mapping, Tuple, Union
 
-from labial.core.guard import Guard, alone
+from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import DONE, checked, library, memory
-from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError
 from labial.runtime.rig import Faps, Rig, Values, one_frame
 

@@ -9,12 +9,11 @@ from array import array
 from functools import cache
 from typing import Any, AsyncIterable, AsyncIterator, Iterable, Iterator, List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone
+from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
-from labial.core.numbers import duration, number, whole
 from labial.errors import LabialError, StreamError, did_you_mean
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
+from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
 
 #: Frames per second, LABIAL_HEAR_FPS.

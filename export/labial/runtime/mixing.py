@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Iterable, List, Sequence, Tuple, Union
 
-from labial.core.numbers import number
+from labial.core.guard import number
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
-from labial.runtime.frame import Frame
 from labial.runtime.rig import faps_of
+from labial.runtime.stream import Frame
 
 #: The share of the sound's lips that is nearest to people's where the phonemes are known (docs/hearing.md).
 SHARE = 0.3

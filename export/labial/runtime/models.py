@@ -8,6 +8,7 @@ import unicodedata
 from functools import cache
 from typing import Any, List, Optional, Tuple, Union
 
+from labial.core.guard import whole
 from labial.core.library import (
     BLOB_MAGIC,
     ERROR_NAME,
@@ -19,7 +20,6 @@ from labial.core.library import (
     memory,
     sentence,
 )
-from labial.core.numbers import whole
 from labial.corpus.aliases import LABEL_SETS
 from labial.errors import LabialError, ModelError, StreamError
 from labial.files import limits

@@ -12,16 +12,15 @@ import time
 import warnings
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.guard import Guard, alone
+from labial.core.guard import Guard, alone, duration, number
 from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
-from labial.core.numbers import duration, number
 from labial.core.words import OwnWords, labels
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
-from labial.runtime.frame import Frame
 from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.stream import Frame
 from labial.runtime.words import Sounds, offset
 
 #: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes

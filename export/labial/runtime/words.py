@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.numbers import expect_milliseconds, number, whole
+from labial.core.guard import expect_milliseconds, number, whole
 from labial.corpus.words import (
     ENGLISH,
     LATEST,

@@ -9,8 +9,7 @@ import numpy as np
 
 from labial.errors import needs
 from labial.files import limits
-from labial.rig.description import Rig
-from labial.rig.gestures import POSES
+from labial.rig.description import POSES, Rig
 from labial.rig.table import convert, expected
 
 #: Drawn shares of a pose; a quarter beyond it shows limits.

@@ -1,4 +1,4 @@
-"""Which channels of a frame a model solves, and how the others follow (``lib/followers.h``).
+"""Which channels of a frame a model solves, and how the others follow (``lib/followers.c``; docs/method.md).
 
 A model's `source` (13,) names for each channel of a frame the one whose motion it has: itself where it is solved, the
 other side of the mouth where it mirrors that, or FROM_CORNERS where it is FAP 17, computed of the corners.
@@ -6,7 +6,7 @@ other side of the mouth where it mirrors that, or FROM_CORNERS where it is FAP 1
 
 from __future__ import annotations
 
-from typing import Tuple
+from typing import Callable, Tuple
 
 import numpy as np
 
@@ -57,3 +57,30 @@ def integer_range(ends: np.ndarray) -> Tuple[int, int]:
     """`low` and `gain` of ``labial_protrusion_t`` for a range (2,) of the corners' mean, FAP."""
     low, high = (int(end) for end in np.rint(POSITION_SCALE * np.asarray(ends)))
     return low, round(2**24 / (2 * (high - low)))
+
+
+def complete(motion: np.ndarray, source: np.ndarray, computed: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """(T, 13) FAP: frames of the motion (T, C) of the channels that are solved, with a model's `source` (13,);
+    `computed` gives FAP 17 (T,) of both corners (T, 2), FAP."""
+    column = columns(source)
+    frames = np.empty((len(motion), CHANNELS))
+    frames[:] = motion[:, np.maximum(column, 0)]
+    if column[FAP_17] == FROM_CORNERS:
+        frames[:, FAP_17] = computed(frames[:, CORNERS])
+    return frames
+
+
+def interpolated(corners: np.ndarray, ends: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(T,) FAP 17 of both corners (T, 2): the `values` (17,) lie at even distances over the range `ends` (2,) of their
+    mean, and are constant beyond; all FAP."""
+    result: np.ndarray = np.interp(corners.mean(axis=1), np.linspace(ends[0], ends[1], len(values)), values)
+    return result
+
+
+def in_integers(corners: np.ndarray, low: int, gain: int, values: np.ndarray) -> np.ndarray:
+    """(T,) FAP 17 of both corners (T, 2), all Q4 FAP, by the tables of ``labial_protrusion_t``."""
+    at = (np.clip(corners.sum(axis=1) - 2 * low, 0, 65535) * gain) >> 12
+    index = np.minimum(at >> 8, VALUES - 2)
+    share = np.minimum(at - 256 * index, 256)
+    result: np.ndarray = values[index] + (((values[index + 1] - values[index]) * share + 128) >> 8)
+    return result

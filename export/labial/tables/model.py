@@ -1,4 +1,4 @@
-"""The trained float model: its contents, and the .npz file in which it is stored.
+"""The trained float model: its contents, the .npz file in which it is stored, and the same model with wider motion.
 
 Shapes use P phonemes, N mixture components (of all phonemes), V viseme classes, Q states, L kernel taps, K knots of a
 pair and the 13 channels of :mod:`labial.files.faps`. Positions are FAP units, durations seconds, probabilities natural
@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass, field, fields
-from typing import Any, BinaryIO, Dict, Tuple, Union
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, BinaryIO, Dict, Optional, Tuple, Union
 
 import numpy as np
 
@@ -287,3 +287,43 @@ def _texts(data: bytes) -> Dict[str, Any]:
     expect(isinstance(text["training"], dict), "model.json: training is not an object")
     values = {name: text[name] for name in _TEXT}
     return {**values, "phonemes": tuple(text["phonemes"]), "classes": tuple(text["classes"])}
+
+
+def mean_pose(model: Model) -> np.ndarray:
+    """(13,) FAP: the pose that motion is widened about, the mean of the corpus outside silence."""
+    known = model.training.get("mean_pose")
+    if isinstance(known, list) and len(known) == CHANNELS:
+        return np.asarray(known, dtype=np.float64)
+    result: np.ndarray = model.emission_mean.mean(axis=1)
+    return result
+
+
+def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.ndarray] = None,
+            contacts: bool = True) -> Model:
+    """The model with its targets widened about `centre` (13,), by default the mean pose, by a factor for all channels
+    or one per channel (13,).
+
+    Least squares learns averages, which move less than the averaged motions: lips that follow them mumble. Widening the
+    motion about its mean restores the range; the average error grows, slowly at first.
+
+    All terms of a target are linear, so that the factor applies to the tables: shape' = c + g (shape - c); slopes,
+    kernels and pairs are multiplied by g. Floors, where lips meet, stay; the search and equation 3 follow the targets.
+    Without `contacts` phonemes in which lips meet keep their own shape in the channels in which they do, so that they
+    press no harder where others open wider.
+    """
+    factor = np.broadcast_to(np.asarray(gain, dtype=np.float64), (CHANNELS,))
+    if centre is None:
+        centre = mean_pose(model)
+    own = np.tile(factor, (len(model.phonemes), 1))
+    if not contacts:
+        meets = model.contact.copy()
+        meets[model.phonemes.index(model.silence)] = False
+        own[meets] = 1.0
+    of_component = np.repeat(own, model.component_count, axis=0)
+    return replace(
+        model,
+        shape=centre + (model.shape - centre) * of_component,
+        slope=model.slope * of_component,
+        kernel=model.kernel * factor,
+        pair_shape=model.pair_shape * factor,
+    )

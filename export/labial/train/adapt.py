@@ -21,9 +21,8 @@ from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.reference.contact import FRAMES
 from labial.reference.shape import ShapeTables, choose
-from labial.tables.amplitude import mean_pose, widened
 from labial.tables.followers import is_symmetric
-from labial.tables.model import Model
+from labial.tables.model import Model, mean_pose, widened
 from labial.train.expression import HALF, shared_gains
 from labial.train.kernels import Kernels, Regression, code_of, columns_alike, targets_without_floors
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut

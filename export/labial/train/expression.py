@@ -15,8 +15,7 @@ from labial.corpus.phonesets import PhoneSet
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
-from labial.tables.amplitude import widened
-from labial.tables.model import Model
+from labial.tables.model import Model, widened
 from labial.train.recordings import Recording, taught
 from labial.train.workers import Workers
 

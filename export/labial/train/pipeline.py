@@ -16,9 +16,8 @@ from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.reference.contact import FRAMES, raised
 from labial.reference.shape import ShapeTables, choose
-from labial.tables.amplitude import widened
 from labial.tables.followers import FAP_17, columns, every, mirrored, solved
-from labial.tables.model import Model
+from labial.tables.model import Model, widened
 from labial.tables.quantise import LIMITS
 from labial.train.adapt import about_talkers
 from labial.train.codebook import Codebook, Division, lbg, train_channel

@@ -14,8 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 from sklearn.isotonic import IsotonicRegression
 
-from labial.reference.followers import interpolated
-from labial.tables.followers import CORNERS, FAP_17, FROM_CORNERS, VALUES
+from labial.tables.followers import CORNERS, FAP_17, FROM_CORNERS, VALUES, interpolated
 from labial.tables.model import Model
 from labial.train.expression import AMPLITUDE, chosen, motion_of
 from labial.train.recordings import Recording

@@ -1,4 +1,4 @@
-"""Reads the CMU Pronouncing Dictionary.
+"""Reads the CMU Pronouncing Dictionary, and has its notice.
 
 A line is ``word PHONE PHONE ...``, with stress digits behind vowels; further pronunciations of a word are ``word(2)``
 and so on; ``#`` and ``;;;`` begin comments. Words with characters other than letters and the apostrophe, and words of
@@ -34,6 +34,33 @@ COMMON = Path(__file__).with_name("common.txt")
 _PHONEMES_MOST = 2 * LONGEST
 _WORD = re.compile(r"[a-z']+")
 _VARIANT = re.compile(r"\(\d+\)$")
+#: What the dictionary's licence wants in what is made from it.
+NOTICE = """Trained on the CMU Pronouncing Dictionary, which comes with this notice:
+
+Copyright (C) 1993-2015 Carnegie Mellon University. All rights reserved.
+
+Redistribution and use in source and binary forms, with or without modification, are permitted provided that the
+following conditions are met:
+
+1. Redistributions of source code must retain the above copyright notice, this list of conditions and the following
+   disclaimer. The contents of this file are deemed to be source code.
+
+2. Redistributions in binary form must reproduce the above copyright notice, this list of conditions and the following
+   disclaimer in the documentation and/or other materials provided with the distribution.
+
+This work was supported in part by funding from the Defense Advanced Research Projects Agency, the Office of Naval
+Research and the National Science Foundation of the United States of America, and by member companies of the Carnegie
+Mellon Sphinx Speech Consortium. We acknowledge the contributions of many volunteers to the expansion and improvement of
+this dictionary.
+
+THIS SOFTWARE IS PROVIDED BY CARNEGIE MELLON UNIVERSITY ``AS IS'' AND ANY EXPRESSED OR IMPLIED WARRANTIES, INCLUDING,
+BUT NOT LIMITED TO, THE IMPLIED WARRANTIES OF MERCHANTABILITY AND FITNESS FOR A PARTICULAR PURPOSE ARE DISCLAIMED. IN NO
+EVENT SHALL CARNEGIE MELLON UNIVERSITY NOR ITS EMPLOYEES BE LIABLE FOR ANY DIRECT, INDIRECT, INCIDENTAL, SPECIAL,
+EXEMPLARY, OR CONSEQUENTIAL DAMAGES (INCLUDING, BUT NOT LIMITED TO, PROCUREMENT OF SUBSTITUTE GOODS OR SERVICES; LOSS OF
+USE, DATA, OR PROFITS; OR BUSINESS INTERRUPTION) HOWEVER CAUSED AND ON ANY THEORY OF LIABILITY, WHETHER IN CONTRACT,
+STRICT LIABILITY, OR TORT (INCLUDING NEGLIGENCE OR OTHERWISE) ARISING IN ANY WAY OUT OF THE USE OF THIS SOFTWARE, EVEN
+IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE.
+"""
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from typing import Iterable, List
 
 from labial.files.c import check_name, rows, written_by
 from labial.files.outputs import PathLike, folder
-from labial.words.dictionary import PHONEMES
-from labial.words.notice import NOTICE
+from labial.words.dictionary import NOTICE, PHONEMES
 from labial.words.packing import PackedWords
 from labial.words.times import CLASSES, MILLISECONDS
 

@@ -18,12 +18,13 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
-from typing import List, Sequence, Tuple
+from typing import Iterable, List, Sequence, Tuple
+
+import numpy as np
 
 from labial.errors import ModelError
 from labial.words.alignment import phonemes_of
-from labial.words.dictionary import LETTERS, LONGEST
-from labial.words.hashing import hash_of
+from labial.words.dictionary import LETTERS, LONGEST, letters_of
 from labial.words.questions import LABELS_MOST, ends_in_vowel
 from labial.words.tables import WordTables
 
@@ -31,6 +32,10 @@ from labial.words.tables import WordTables
 LETTER_LABELS, _PART, _BYTES = 32, (1 << 13) - 1, 65535
 #: Marks beside a label's phonemes: it ends in a vowel.
 VOWEL = 0x80
+#: Of FNV-1a; the first multiplier that is tried, and how many are.
+_BASIS, _PRIME = 2166136261, 16777619
+_FIRST = 2654435769
+_TRIES = 200_000
 
 
 @dataclass(frozen=True)
@@ -130,3 +135,28 @@ def _exceptions(tables: WordTables) -> Tuple[Tuple[int, ...], bytes]:
 
 
 assert LONGEST <= 32 and LABELS_MOST <= 64
+
+
+def hash_of(word: str) -> int:
+    """FNV-1a of a word's letters, without the multiplier."""
+    value = _BASIS
+    for letter in letters_of(word):
+        value = ((value ^ letter) * _PRIME) & 0xFFFFFFFF
+    return value
+
+
+def multiplier_for(exceptions: Sequence[str], words: Iterable[str]) -> int:
+    """The first odd number by which no two exceptions, and no exception and another of `words`, share 24 bits."""
+    others = np.array([hash_of(word) for word in sorted(set(words) - set(exceptions))], dtype=np.uint32)
+    own = np.array([hash_of(word) for word in exceptions], dtype=np.uint32)
+    taken = np.zeros(1 << 24, dtype=bool)
+    for step in range(_TRIES):
+        multiplier = (_FIRST + 2 * step) & 0xFFFFFFFF
+        places = (own * np.uint32(multiplier)) >> np.uint32(8)
+        if len(np.unique(places)) < len(places):
+            continue
+        taken[places] = True
+        if not taken[(others * np.uint32(multiplier)) >> np.uint32(8)].any():
+            return multiplier
+        taken[places] = False
+    raise ModelError("every hash takes some word of the dictionary for an exception: choose fewer exceptions")

@@ -11,7 +11,7 @@ from labial.errors import ModelError
 from labial.words import decoder
 from labial.words.alignment import align, learn, loosened
 from labial.words.dictionary import LETTERS, Entry, pronunciations
-from labial.words.hashing import multiplier_for
+from labial.words.packing import multiplier_for
 from labial.words.questions import LABELS_MOST, Asked, features
 from labial.words.tables import WordTables
 from labial.words.trees import FIRST, OTHER, Samples, grow, prune
@@ -19,7 +19,7 @@ from labial.words.trees import FIRST, OTHER, Samples, grow, prune
 #: Leaves of all trees, and exceptions, of the bundled tables.
 LEAVES, EXCEPTIONS = 13_000, 1_000
 
-#: What whoever passes the tables on must say; :mod:`labial.words.notice` has the whole notice.
+#: What whoever passes the tables on must say; :data:`labial.words.dictionary.NOTICE` has the whole notice.
 ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-2015 Carnegie Mellon University. All "
                "rights reserved.")
 
