@@ -45,8 +45,8 @@ def passed_modules(report: Path) -> Set[str]:
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist looks at the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
     """Groups the tests of some modules (``--dist loadgroup``), and gives those of others more tries. Leaves the slow
-    tests out, but where LABIAL_REQUIRE_ALL is set in the environment; there LABIAL_PASSED may name the report of a run
-    without them, whose passed modules are left to it."""
+    tests out, but where LABIAL_REQUIRE_ALL is set in the environment and LABIAL_SLOW is not OFF; there LABIAL_PASSED may
+    name the report of a run without them, whose passed modules are left to it."""
     for item in items:
         if item.path.stem in TOGETHER:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
@@ -55,7 +55,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item
     every = os.environ.get("LABIAL_REQUIRE_ALL", "").upper() in ("ON", "1", "TRUE", "YES")
     report = os.environ.get("LABIAL_PASSED", "")
     passed = passed_modules(Path(report)) if every and report else set()
-    left_out = [item for item in items if (not every if item.get_closest_marker("slow") else item.path.stem in passed)]
+    slow = every and os.environ.get("LABIAL_SLOW") != "OFF"
+    left_out = [item for item in items if (not slow if item.get_closest_marker("slow") else item.path.stem in passed)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in set(left_out)]
 
