@@ -226,6 +226,20 @@ def test_several_files_say_which_are_new(given: Path, monkeypatch: pytest.Monkey
     assert sorted(os.listdir()) == ["a.c", "a.lab", "b.c", "c.c", "model.npz"]
 
 
+@pytest.mark.parametrize("command", [["bake", "../a.lab", "-o", "talk.h"],
+                                     ["export", "../model.npz", "--name", "m", "-o", "."]])
+def test_the_current_folder_stays(given: Path, monkeypatch: pytest.MonkeyPatch, command: List[str]) -> None:
+    """Would catch an empty folder that is replaced by a new one: the shell that stands in it would be nowhere, and the
+    folder's owner and permissions would be lost."""
+    Path("empty").mkdir(mode=0o770)
+    before = os.stat("empty")
+    monkeypatch.chdir("empty")
+    for _ in range(2):
+        assert main(command) == 0
+        assert os.path.samestat(os.stat("."), before) and os.stat("../empty").st_ino == before.st_ino
+        assert os.listdir() and not [name for name in os.listdir() if name.startswith(".")]
+
+
 def test_nothing_is_left_of_what_fails(given: Path) -> None:
     """Neither a folder that was made for it nor a temporary file, and errors name the file that was meant."""
     with pytest.raises(LabialError, match="^new/deep/none/x: there is no folder"), outputs.folder("new/deep") as made:

@@ -82,9 +82,10 @@ def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
     """A temporary folder for the files of the folder `path`, which is created if missing. Errors of the folder itself
     name `name`, if it is given.
 
-    A new or empty folder appears with all of its files at once. In a folder with other files, the files are renamed one
-    after the other when the block ends, each as :func:`writing` does; if that fails, the LabialError says which are
-    new. No file is changed if the block raises.
+    A new folder appears with all of its files at once. A folder that exists stays, since it may be the current one, and
+    its owner and permissions are the user's: the files are renamed into it one after the other when the block ends,
+    each as :func:`writing` does; if that fails, the LabialError says which are new. No file is changed if the block
+    raises.
     """
     target, shown = Path(path), path if name is None else name
     lock: Optional[int] = None
@@ -93,7 +94,7 @@ def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
             raise LabialError(f"{path}: not a folder")
         made = [item for item in (target, *target.parents) if not item.exists()]
         place = Path(os.path.realpath(target))
-        whole = _replaceable(place)
+        whole = not place.exists()
         staging = Path(_part(os.path.join(place if not whole else place.parent, place.name)))
     try:
         with _named(shown):
@@ -299,13 +300,6 @@ def _opened(descriptor: int, encoding: Optional[str]) -> IO[Any]:
     if encoding is None:
         return os.fdopen(descriptor, "wb")
     return os.fdopen(descriptor, "w", encoding=encoding, newline="\n")
-
-
-def _replaceable(place: Path) -> bool:
-    """Whether a folder can replace this one, which is empty or missing."""
-    if not place.exists():
-        return True
-    return not os.listdir(place) and not os.path.ismount(place) and os.access(place.parent, os.W_OK)
 
 
 # ---- Renaming
