@@ -15,11 +15,13 @@ export class Head<O extends Face | Rig = Face> {
     readonly output: O;
     /** The meshes that have shapes: head, teeth, beard. */
     readonly meshes: readonly any[];
-    /** What is spoken: a track, a hearing or a voice of this output, or whatever gives weights; null closes the mouth. */
+    /** What is spoken: a track, a hearing or a voice of this output, or whatever gives weights; null closes the mouth
+     * within a fifth of a second. */
     get source(): Source | null;
     set source(source: Source | null);
-    /** The sound whose time counts; without it that of the source's own clock, or what update() is given. */
-    audio: { readonly currentTime: number } | null;
+    /** The sound whose time counts, as heard() tells it; without it that of the source's own clock, or what update() is
+     * given. */
+    audio: { readonly currentTime: number; readonly ended?: boolean } | null;
     /** Shows the source's moment: once for each picture, before `vrm.update()` and `renderer.render()`. */
     update(seconds?: number): void;
     /** Shows weights by name. */

@@ -1,5 +1,9 @@
 // Finds out which weights a loaded avatar takes, and moves it. attach.d.ts documents it.
+import { heard } from "./heard.js";
 import { LabialError } from "./memory.js";
+
+/** Milliseconds in which a mouth comes to rest. */
+const CLOSING = 200;
 
 /** A name without its case, separators and the mesh's name before a dot; behind some dots is a side, L or R. */
 const plain = (name) => name.replace(/^.*\.(?=[^.]{2})/, "").replace(/[\W_]/g, "").toLowerCase();
@@ -26,6 +30,8 @@ export class Head {
     #move; // by the plain name of a shape or an expression, what sets it
     #places = new Map(); // of each weight: what it moves
     #source = null;
+    #shown = {}; // weights of the source
+    #closing = null; // what eases them to rest, after the source
 
     constructor(output, meshes, move) {
         this.output = output;
@@ -46,24 +52,47 @@ export class Head {
             const [given, taken] = [source, this].map(({ output }) => (typeof output === "string" ? output : "a rig's"));
             throw new TypeError(`the source's output is ${given}, and the head takes ${taken}: { output: head.output } makes it so`);
         }
-        if (!source && this.#source) this.rest();
+        if (source) this.#closing = null;
+        else if (this.#source) this.#closing = this.#closes();
         this.#source = source ?? null;
     }
 
     show(weights) {
-        for (const [name, weight] of Object.entries(weights)) this.#placesOf(name).forEach((set) => set(weight));
+        this.#closing = null;
+        this.#set(weights);
     }
 
     update(seconds) {
         const source = this.#source;
-        if (!source) return;
-        const at = seconds ?? this.audio?.currentTime;
+        if (!source) {
+            if (this.#closing) this.#set(this.#closing());
+            return;
+        }
+        const at = seconds ?? (this.audio ? heard(this.audio) : undefined);
         if (at === undefined && source.at.length > 0) throw new TypeError("the source has no clock: set head.audio, or say the time");
-        this.show(at === undefined ? source.at() : source.at(at));
+        this.#shown = at === undefined ? source.at() : source.at(at);
+        this.#set(this.#shown);
     }
 
     rest() {
+        this.#closing = null;
         for (const places of this.#places.values()) places.forEach((set) => set(0));
+    }
+
+    #set(weights) {
+        for (const [name, weight] of Object.entries(weights)) this.#placesOf(name).forEach((set) => set(weight));
+    }
+
+    /** What eases the weights to rest, each time it is called; in the end they rest even if nobody calls it. */
+    #closes() {
+        const from = Object.entries(this.#shown);
+        const begin = performance.now();
+        const ease = () => {
+            const left = Math.max(0, 1 - (performance.now() - begin) / CLOSING);
+            return Object.fromEntries(from.map(([name, weight]) => [name, weight * left]));
+        };
+        setTimeout(() => { if (this.#closing === ease) this.rest(); }, CLOSING);
+        return ease;
     }
 
     #placesOf(name) {

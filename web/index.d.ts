@@ -142,6 +142,10 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
 }
 
+/** Seconds of an <audio> or <video> element's sound, for a track's at(). After the sound, where the element's own time
+ * stands, time goes on, so that the mouth comes to rest. */
+export function heard(audio: { readonly currentTime: number; readonly ended?: boolean }): number;
+
 /** An object of pages, where the types of pages are known. */
 type Dom<Name extends string> = typeof globalThis extends { [key in Name]: { prototype: infer One } } ? One : unknown;
 

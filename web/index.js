@@ -1,12 +1,13 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
 import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown } from "./memory.js";
+import { heard } from "./heard.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
 import * as timings from "./services.js";
 import speech from "./speech.js";
 
-export { LabialError, Stream, Track, timings };
+export { LabialError, Stream, Track, heard, timings };
 
 /** Most outputs of a rig. */
 const OUTPUTS_MAX = 1024;

@@ -8,6 +8,7 @@ import { Labial, folder, source } from "./setup.mjs";
 const { CHANNELS, faceFrame, follow, mouthShape } = await import(pathToFileURL(`${folder}/mouth.js`));
 const { LabialMouth } = await import(pathToFileURL(`${folder}/labial-mouth.js`));
 const { attach } = await import(pathToFileURL(`${folder}/attach.js`));
+const { heard } = await import(pathToFileURL(`${folder}/index.js`));
 const labial = await Labial.load();
 
 /** A scene of three.js, as far as attach() looks: meshes with shapes of these names. */
@@ -145,6 +146,62 @@ test("a source that moves nothing of a head is an error", () => {
     }
     head.source = labial.render(said, { output: "arkit" });
     assert.throws(() => head.update(), { name: "TypeError", message: /head\.audio/ });
+});
+
+test("a mouth comes to rest behind the end of its sound, and opens again when the sound is played again", ({ mock }) => {
+    let now = 7000;
+    mock.method(performance, "now", () => now);
+    const found = scene(["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"]);
+    const head = attach(found);
+    const track = labial.render([{ start: 0, end: 0.3, label: "AA" }], { output: "arkit" });
+    const open = () => Math.max(...found.nodes[0].morphTargetInfluences);
+    const sound = { currentTime: 0.3, ended: true };
+    Object.assign(head, { source: track, audio: sound });
+    head.update();
+    assert.ok(open() > 0.1 && heard(sound) === 0.3);
+    now += 100;
+    assert.ok(Math.abs(heard(sound) - 0.4) < 1e-9);
+    now += 1000;
+    head.update();
+    assert.equal(open(), 0);
+    Object.assign(sound, { currentTime: 0.2, ended: false });
+    head.update();
+    assert.ok(open() > 0.1 && heard(sound) === 0.2);
+    Object.assign(sound, { currentTime: 0.3, ended: true });
+    assert.equal(heard(sound), 0.3);
+});
+
+test("a head without a source eases to rest, also if nobody draws it", ({ mock }) => {
+    let now = 7000;
+    let due;
+    mock.method(performance, "now", () => now);
+    mock.method(globalThis, "setTimeout", (call) => { due = call; });
+    const found = scene(["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"]);
+    const head = attach(found);
+    const open = () => found.nodes[0].morphTargetInfluences[0];
+    const after = (milliseconds) => {
+        now += milliseconds;
+        head.update();
+        return Math.round(1000 * open()) / 1000;
+    };
+    const speak = () => {
+        head.source = { at: () => ({ jawOpen: 0.4 }) };
+        head.update();
+        head.source = null;
+    };
+    speak();
+    assert.deepEqual([0, 50, 100, 100].map(after), [0.4, 0.3, 0.1, 0]);
+    speak();
+    assert.equal(open(), 0.4);
+    due();
+    assert.equal(open(), 0);
+    speak();
+    head.show({ jawOpen: 0.7 }); // which counts from then on
+    due();
+    assert.equal(after(100), 0.7);
+    speak();
+    head.rest();
+    assert.equal(after(100), 0);
 });
 
 test("sides behind a dot are found, as Blender names them", () => {

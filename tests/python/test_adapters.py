@@ -156,6 +156,7 @@ def test_shapes_of_every_mesh(site: Any, browser: Browser) -> None:
         head.audio.currentTime = 0;
         head.update();
         head.source = null;
+        await new Promise((resolve) => setTimeout(resolve, 250));
         const rest = Math.max(...Object.values(read(head.meshes)));
         const file = await readFrames("hello_arkit.jsonl", "arkit");
         head.source = file;
