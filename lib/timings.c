@@ -240,7 +240,7 @@ static int phseg_line(labial_timings_t *t)
 /* X(name, suffix, help, field, line): `field` takes a field that has ended, null where all wait for the line; `line`
  * takes a line that has ended and is not empty, null where none does. */
 #define LABIAL_FORMATS(X)                                                                                              \
-    X("auto", "", "told from the first line (default)", 0, 0)                                                          \
+    X("auto", "", "told from the first line that is no comment (default)", 0, 0)                                       \
     X("flite", ".psdur", "`flite -psdur`: label:end ..., seconds; every line starts again from 0", flite_field, 0)     \
     X("lab", ".lab", "start end label [apex [word]], a line each, seconds; gaps are silence; # comment", lab_field,    \
       lab_line)                                                                                                        \
@@ -286,6 +286,17 @@ const char *labial_timings_format_suffix(unsigned format)
 
 /* ---- Which format it is ---------------------------------------------------------------------------------------- */
 
+/* Whether the first row of numbers is mary's, which has a phoneme's end and a whole number below a line of # alone, or
+ * lab's, below a comment: a start, mostly 0, and an end. */
+static int row_is_mary(const labial_timings_t *t)
+{
+    uint64_t end = 1; /* where it is too large */
+    if (!t->heading || t->count < 2u || !labial_timings_is_whole(t->fields[1]))
+        return 0;
+    (void)labial_timings_read(t->fields[0], LABIAL_SECOND, LABIAL_TIMINGS_TIME_MAX, &end);
+    return end > 0u;
+}
+
 /* A first line that starts with a number: all its fields are needed to tell. Times of lab have decimal points. A first
  * field of digits alone may also be an MBROLA phoneme (French has `2` and `9`), with a duration and pitch points behind
  * it; two numbers alone are a line that lacks its label. */
@@ -296,12 +307,21 @@ static void tell_numbers(labial_timings_t *t, int line_ends)
         c++;
     if (t->count >= 3u && labial_timings_is_number(t->fields[2]))
         t->format = LABIAL_TIMINGS_PHO;
-    else if (*c || t->count >= 3u || line_ends)
-        t->format = t->heading ? LABIAL_TIMINGS_MARY : LABIAL_TIMINGS_LAB;
+    else if ((*c && !t->heading) || t->count >= 3u || line_ends)
+        t->format = row_is_mary(t) ? LABIAL_TIMINGS_MARY : LABIAL_TIMINGS_LAB;
 }
 
-/* Tells the format from the fields of the first line so far. A colon within the first field is flite's; otherwise what
- * is no number is MBROLA's phoneme, and the second field must be its duration. */
+/* A line that starts with #: a comment of lab or mary, or # alone, which is mary's heading or pho's flush mark. */
+static void tell_hash(labial_timings_t *t, int line_ends)
+{
+    if (t->count > 1u || !labial_timings_is(t->fields[0], "#"))
+        t->comment = 1;
+    else if (line_ends)
+        t->heading = 1;
+}
+
+/* Tells the format from the fields so far of the first line that is no comment. A colon within the first field is
+ * flite's; otherwise what is no number is MBROLA's phoneme, and the second field must be its duration. */
 static int tell_format(labial_timings_t *t, int line_ends)
 {
     const char *first = t->fields[0], *colon = 0, *c;
@@ -313,14 +333,15 @@ static int tell_format(labial_timings_t *t, int line_ends)
         tell_numbers(t, line_ends);
     else if (colon && colon != first && labial_timings_is_number(colon + 1))
         t->format = LABIAL_TIMINGS_FLITE;
-    else if (labial_timings_is_word(first, "sfrm"))
+    else if (first[0] == '#')
+        tell_hash(t, line_ends);
+    else if (labial_timings_is_word(first, "sfrm")) {
         t->format = LABIAL_TIMINGS_PHSEG;
-    else if (labial_timings_is_word(first, "file") || first[0] == '"')
+        t->heading = 0;
+    } else if (labial_timings_is_word(first, "file") || first[0] == '"')
         t->format = LABIAL_TIMINGS_TEXTGRID;
     else if (t->count >= 2u && labial_timings_read(t->fields[1], LABIAL_MILLISECOND, LABIAL_TIMINGS_TIME_MAX, &ignored))
         t->format = LABIAL_TIMINGS_PHO;
-    else if (t->count == 1u && labial_timings_is(first, "#"))
-        t->heading = 1; /* mary's, or pho's flush mark */
     else if (t->count >= 2u || line_ends)
         return labial_timings_malformed(t, "this is not timings of flite, lab, htk, pho, mary, phseg or textgrid", 0, 0,
                                         0);

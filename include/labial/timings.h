@@ -11,7 +11,7 @@
  *   pho       MBROLA: `label milliseconds [position pitch]...` per line. `;` starts a comment, `#` alone is the flush
  *             mark and ignored, `_` is silence, as is eSpeak's `_:`.
  *   mary      MaryTTS's REALISED_DURATIONS: `end number label` per line, seconds, where each phoneme ends; lines that
- *             start with # are comments, and one of them comes first.
+ *             start with # are comments, and one of # alone comes first.
  *   phseg     CMU Sphinx: the header `SFrm EFrm SegAScr Phone`, rows of that, frames of 10 ms, `Total score: ...`.
  *   textgrid  Praat's TextGrid, long or short, as of the Montreal Forced Aligner. The tier is the one asked for; else
  *             the first called phones, phonemes, segments, one of these without s, or MAU (WebMAUS's), in any case,
@@ -52,7 +52,7 @@ extern "C" {
 /* Overlaps and gaps up to this many nanoseconds come from rounding. */
 #define LABIAL_TIMINGS_TOLERANCE 1000000u
 
-/* The formats; AUTO is told from the first line. Their names, in this order, are labial_timings_format_name()'s. */
+/* The formats; AUTO is told from the first line that is no comment. Their names, in this order, are labial_timings_format_name()'s. */
 typedef enum {
     LABIAL_TIMINGS_AUTO,
     LABIAL_TIMINGS_FLITE,
@@ -146,7 +146,7 @@ struct labial_timings {
     uint8_t format;          /* labial_timings_format_t */
     uint8_t mark;            /* bytes of a byte order mark that were read */
     uint8_t comment, marker; /* within a comment; between `<laugh` and `>` */
-    uint8_t heading;         /* mary: a line of # was seen; phseg: 1 the header, 2 the total */
+    uint8_t heading;         /* mary: a line of # alone was seen; phseg: 1 the header, 2 the total */
     uint8_t rows;            /* 1 after the first row of lab */
     uint32_t count;          /* fields of the line that are complete */
     uint32_t length;         /* of the field being read */
