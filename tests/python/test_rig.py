@@ -314,6 +314,16 @@ def test_a_stream_looks_ahead(tmp_path: Path) -> None:
     face.rest()
     stream = (Frame(k, tuple(row)) for k, row in enumerate(frames.tolist()))
     assert [values["jaw"] for values in face.ahead(stream, 8)] == expected
+    face.rest()
+    kept = [Frame(k, tuple(row)) for k, row in enumerate(frames.tolist())]
+    assert [face.apply(kept[k], kept[k + 1 : k + 9])["jaw"] for k in range(30)] == expected
+    face.rest()
+    assert [face.apply(frames[k], frames[k + 1 : k + 9])["jaw"] for k in range(30)] == expected
+    with pytest.raises(LabialError, match="a frame has 13 FAPs, not 12"):
+        face.apply(frames[0], frames[1:3, :12])
+    for mixed in ([kept[1], 5], [5, kept[1]]):
+        with pytest.raises(TypeError, match="FAPs are whole numbers"):
+            face.apply(frames[0], mixed)
     arkit, frame = Rig("arkit"), Frame(0, tuple(frames[10].tolist()))
     assert arkit.apply(frame) == arkit.apply(frame.faps)
     with pytest.raises(LabialError, match="looks 0 to 65,534 frames ahead, not -1"):

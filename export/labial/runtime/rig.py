@@ -9,7 +9,7 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, Protocol, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, List, Protocol, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
@@ -57,6 +57,14 @@ def one_frame(frame: Faps) -> array[int]:
     if len(numbers) != CHANNELS:
         raise LabialError(f"a frame has {CHANNELS} FAPs, not {len(numbers)}")
     return numbers
+
+
+def _frames_after(following: Iterable[Union[int, Faps]]) -> array[int]:
+    """The FAPs of frames, or FAPs that are one after the other already, in one row."""
+    items: List[Any] = list(following)
+    if items and isinstance(faps_of(items[0]), Iterable):
+        return array("h", chain.from_iterable(map(one_frame, items)))
+    return _whole_faps(items)
 
 
 class Rig:
@@ -144,14 +152,14 @@ class Rig:
         ctypes.memset(self._changes, 0, ctypes.sizeof(self._changes))
         return self.values
 
-    def apply(self, faps: Faps, following: Iterable[int] = (), *, visemes: Iterable[int] = ()) -> Values:
-        """Applies one frame, or its 13 FAPs, integers of 16 bits; returns the values. `following` are the FAPs of the
-        frames after it, one frame after the other: with them a servo with a `closed` position starts early enough to be
-        closed in p, b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of
-        the frame's sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. With
-        such outputs there are no limits of acceleration, and no frames that follow. :meth:`labial.Frame.rig` gives
-        shares by itself."""
-        numbers, ahead = one_frame(faps), _whole_faps(following)
+    def apply(self, faps: Faps, following: Iterable[Union[int, Faps]] = (), *, visemes: Iterable[int] = ()) -> Values:
+        """Applies one frame, or its 13 FAPs, integers of 16 bits; returns the values. `following` are the frames after
+        it, or their FAPs in one list: with them a servo with a `closed` position starts early enough to be closed in p,
+        b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of the frame's
+        sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. With such
+        outputs there are no limits of acceleration, and no frames that follow. :meth:`labial.Frame.rig` gives shares by
+        itself."""
+        numbers, ahead = one_frame(faps), _frames_after(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")
@@ -170,9 +178,9 @@ class Rig:
         for frame in frames:
             waiting.append(one_frame(frame))
             if len(waiting) > count:
-                yield self.apply(waiting.popleft(), chain.from_iterable(waiting))
+                yield self.apply(waiting.popleft(), waiting)
         while waiting:
-            yield self.apply(waiting.popleft(), chain.from_iterable(waiting))
+            yield self.apply(waiting.popleft(), waiting)
 
     @alone
     def play(self, faps: array[int], sight: int) -> array[int]:
