@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import wave
@@ -64,6 +65,16 @@ def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
                           check=False, env={"PATH": "", "PYTHONDONTWRITEBYTECODE": "1", **_environment()})
     assert done.returncode == 0, done.stderr
     assert "labial-mouth" in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(not shutil.which("espeak-ng"), reason="espeak-ng is not installed")
+def test_another_language_needs_no_numpy(tmp_path: Path) -> None:
+    """Right after `pip install`, with espeak-ng: it tells the phonemes, and its sound is left out."""
+    code = ("import sys; sys.modules['numpy'] = None\n"
+            "from labial.__main__ import main; sys.exit(main(['say', '--language', 'de', 'Guten Morgen', '-o', 'x.lab']))")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert [label for label, _ in labial.read_timings(tmp_path / "x.lab")][1] == "G"
 
 
 def _environment() -> dict:

@@ -83,10 +83,9 @@ def run_say(options: argparse.Namespace) -> int:
 def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
     """The text as a synthesiser says it; None without one."""
     voice = options.voice
-    if voice is None and options.language != "en":
-        voice = f"espeak:{options.language}" if shutil.which("espeak-ng") else "none"
     if voice is None:
-        voice = next((name for name, program in _VOICES.items() if shutil.which(program)), "none")
+        voices = _VOICES if options.language == "en" else {f"espeak:{options.language}": "espeak-ng"}
+        voice = next((name for name, program in voices.items() if shutil.which(program)), "none")
         try:
             import numpy  # noqa: F401
         except ImportError:  # the synthesisers' sound needs it, and nothing else here
