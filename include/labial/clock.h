@@ -17,8 +17,8 @@
  * and never played, move nothing. Numbers and times have 64 bits, and do not wrap.
  *
  * Integers only, no allocation, no state but the structure, the same values on every target. Calls on one clock must not
- * overlap; the structure may be moved or copied between calls. The files clock.h, clock.c and result.h need no other file
- * of the library.
+ * overlap; the structure may be moved or copied between calls. Pointers must not be null but in labial_clock_init(). The
+ * files clock.h, clock.c and result.h need no other file of the library.
  */
 #ifndef LABIAL_CLOCK_H
 #define LABIAL_CLOCK_H
@@ -57,13 +57,14 @@ int labial_clock_init(labial_clock_t *clock, uint32_t samples_per_second);
  */
 void labial_clock_play(labial_clock_t *clock, int64_t first, uint32_t count, int64_t now);
 
-/* The loudspeaker was silenced: nothing is heard until labial_clock_play(), and the sample before stays. */
+/* The loudspeaker was silenced: nothing is heard until labial_clock_play(). What was given and not heard is over: the
+ * sample is then the last one that was given with a number. */
 void labial_clock_stop(labial_clock_t *clock);
 
 /*
  * Writes the number of the sample that is heard at the time `now`; in silence, and while a sound without numbers is
- * heard, of the last one before, or 0 without one; while a sound is still heard whose numbers these do not follow, of the
- * first that waits behind it.
+ * heard, of the last one given before, or 0 without one; while a sound is still heard whose numbers these do not follow,
+ * of the first that waits behind it.
  *
  * Returns for how long nothing was heard, in microseconds: 0 while a sound is; -1 when nothing was given yet, and after
  * labial_clock_stop().
