@@ -28,6 +28,13 @@
 /* The number of periods for at least so many milliseconds. */
 #define PERIODS(ms) (uint16_t)(((ms) + PERIOD_MS - 1u) / PERIOD_MS)
 
+#ifdef TALK_PARTS /* of labial bake --parts: one after the other they are the whole motion */
+#define TALK_INIT(part) talk_init(&player, part)
+#else
+#define TALK_PARTS 1u
+#define TALK_INIT(part) talk_init(&player)
+#endif
+
 static labial_player_t player;
 
 /* The pulse of the next period, in microseconds. In fast PWM the pin is high for a count more than the register says. */
@@ -74,22 +81,25 @@ static void talk(void)
 {
     uint8_t command[DFPLAYER_COMMAND_SIZE], i;
     const uint8_t *frame;
+    uint16_t part;
     dfplayer_play(command, 1, 1);
     wait_for_period(0);
     for (i = 0; i < sizeof command; i++)
         serial_write(command[i]);
     /* In the last of these periods the timer loads frame 0. */
     wait_for_period((uint16_t)(PERIODS(COMMAND_MS + DFPLAYER_DELAY_MS) - 2u));
-    talk_init(&player);
-    while ((frame = talk_next(&player)) != NULL) {
-        servo_show(talk_jaw(frame));
-        wait_for_period(0);
+    for (part = 0; part < TALK_PARTS; part++) {
+        TALK_INIT(part);
+        while ((frame = talk_next(&player)) != NULL) {
+            servo_show(talk_jaw(frame));
+            wait_for_period(0);
+        }
     }
 }
 
 int main(void)
 {
-    talk_init(&player);
+    TALK_INIT(0);
     servo_begin(talk_jaw(talk_next(&player)));
     PORTD |= _BV(PORTD2); /* holds pin 2 high while the button is open */
     serial_begin();

@@ -239,6 +239,16 @@ int main(void) {{ {name}_init(&player); return *{name}_next(&player); }}
     assert [int(size) for size in ram] == [0, 4]
 
 
+@pytest.mark.skipif(not shutil.which("avr-gcc"), reason="no avr-gcc: install gcc-avr and avr-libc")
+@pytest.mark.parametrize("options", [[], ["--parts", "pauses"]])
+def test_the_program_for_an_uno_takes_both_headers(options: List[str], tmp_path: Path) -> None:
+    """Catches a player of the page on Arduino boards that does not compile with the motion in parts."""
+    (tmp_path / "a.lab").write_text(SENTENCES)
+    assert main(["bake", str(tmp_path / "a.lab"), "-o", str(tmp_path / "talk.h"), *options]) == 0
+    run("avr-gcc", "-mmcu=atmega328p", "-std=gnu99", "-Os", *warnings("c"), "-I.", f"-I{SOURCE}/examples/talk",
+        SOURCE / "examples" / "uno" / "main.c", "-o", "jaw.elf", cwd=tmp_path)
+
+
 # ---- Parts -----------------------------------------------------------------------------------------------------------
 
 #: Sentences of 1.5, 2 and 1 s, with pauses of half a second and of 2 s between, and one of .3 s within the second.
