@@ -205,9 +205,10 @@ int labial_exact(labial_t *stream, int exact);
 
 /*
  * How far the mouth moves: every channel's distance from the neutral face, in percent of what the models learned. It is
- * 100 after labial_init(); 50 is a mumble, 130 a shout, 0 the neutral face; more than LABIAL_ARTICULATION_MAX counts as
- * that. Lips still meet in p, b, m and the lower lip still touches the teeth in f, v: what is in contact is moved by
- * 100 percent at most. It costs no time.
+ * 100 after labial_init(); 50 is a mumble, 130 a shout, 0 the neutral face, but for FAP 17, which follows the corners and
+ * is up to 3 units off with the bundled models; more than LABIAL_ARTICULATION_MAX counts as that. Lips still meet in p,
+ * b, m and the lower lip still touches the teeth in f, v: what is in contact is moved by 100 percent at most. It costs no
+ * time.
  *
  * It may change at any time, as often as one likes: with each frame that is taken in, the articulation comes nearer to
  * the one that was told last, by up to 10 percent, so that the motion has no jolt. Frames show that

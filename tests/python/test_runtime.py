@@ -378,6 +378,18 @@ def test_threads_share_a_stream_without_harm() -> None:
     assert (np.array([frame.faps for frame in frames]) == labial.render([("AA", 60), ("M", 40)] * 400)).all()
 
 
+def test_no_articulation_is_the_neutral_face() -> None:
+    """But for FAP 17, which is computed of the corners: as labial.h says, of speech and laughs."""
+    with labial.Stream() as stream:
+        stream.articulation(0)
+        for label in ("AA", "UW", "M", "S", "IY", "W", "F", "OW"):
+            stream.push(label, 120)
+        stream.laugh(1.5, 1.0)
+        stream.end()
+        ranges = np.ptp(np.array(frames_of(stream)), axis=0)
+    assert 0 < ranges[2] <= 3 and not np.delete(ranges, 2).any()
+
+
 # ---- Frames: the same bytes as C's, however it is fed
 
 
