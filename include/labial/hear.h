@@ -15,10 +15,12 @@
  * needs 280 ms. A program that has its sound so long before it is heard, as from a network, keeps frames until their time
  * and has lips without delay.
  *
- * Speech should be the only sound. Its level does not matter from peaks at full scale down to 1/100 of it. A stream
- * begins and ends with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140
- * ms. So is steady noise before the first word, unless it is as loud as a voice. A constant offset of the samples is not
- * heard, neither where a sound begins nor where it ends; a step of it in between is.
+ * Speech should be the only sound. Its level does not matter from peaks at full scale, 0 dBFS, down to 200 of 32,768,
+ * -44 dBFS, but that lips begin up to a quarter of a second late where the first word is faint. A stream begins and ends
+ * with the neutral face, all FAPs 0, and so is silence: sound whose samples differ by 32 at most for 140 ms. So is steady
+ * noise before the first word if its root mean square is -55 dBFS at most, or -40 dBFS of a hum or a rumble, whose energy
+ * is in low frequencies; louder noise opens the mouth for as long as it lasts. A constant offset of the samples is
+ * not heard, neither where a sound begins nor where it ends; a step of it in between is.
  *
  * Like the stream of phonemes (labial/labial.h) it never allocates, keeps no state outside `hear` and `workspace`,
  * computes in integers only and gives the same bits on every target and for blocks of any length. Calls on one stream

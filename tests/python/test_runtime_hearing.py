@@ -183,6 +183,38 @@ def test_room_noise_before_the_first_word_does_not_open_the_mouth(name: str, sec
             hearing.restart()
 
 
+def decibels(sound: np.ndarray, level: float) -> np.ndarray:
+    """(N,) int16: a sound whose root mean square is so many dBFS."""
+    return np.rint(sound / np.sqrt(np.mean(sound**2)) * 32768 * 10 ** (level / 20)).astype(np.int16)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(("tilt", "rests", "opens"), [(0.0, -55, -50), (0.5, -55, -48), (1.0, -40, -35)])
+def test_steady_noise_opens_the_mouth_from_a_level_on(name: str, tilt: float, rests: int, opens: int) -> None:
+    """White noise, pink and brown, above 20 Hz, of the levels that hear.h and docs/hearing.md state. Catches noise that
+    is taken for a voice, and a page that promises too much or too little."""
+    spectrum = np.fft.rfft(np.random.default_rng(1).normal(size=4 * 16000)) * (np.arange(2 * 16000 + 1) >= 80)
+    noise = np.fft.irfft(spectrum / np.maximum(np.arange(len(spectrum)), 1.0) ** tilt)
+    with labial.Hearing(model=name) as hearing:
+        assert not np.any(numbers(list(hearing.frames([decibels(noise, rests)]))))
+    with labial.Hearing(model=name) as hearing:
+        assert np.all(np.any(numbers(list(hearing.frames([decibels(noise, opens)])))[100:150], axis=1))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_faint_speech_is_heard(name: str) -> None:
+    """With peaks of -44 dBFS, as hear.h and docs/hearing.md state: the same motion, which begins little later."""
+    with wave.open(str(SOURCE / "examples" / "talk" / "talk.wav")) as file:
+        rate, loud = file.getframerate(), np.frombuffer(file.readframes(file.getnframes()), "<i2").astype(float)
+    gaps: List[np.ndarray] = []
+    for peak in (32767, 200):
+        with labial.Hearing(rate, 1, model=name, exact=True) as hearing:
+            sound = np.rint(loud / np.abs(loud).max() * peak).astype(np.int16)
+            gaps.append(opening(np.array(numbers(list(hearing.frames([sound]))))))
+    begins = [int(np.argmax(np.abs(gap) > 20)) for gap in gaps]
+    assert np.corrcoef(gaps)[0, 1] > 0.9 and 0 <= begins[1] - begins[0] <= 12
+
+
 def test_a_long_block_is_heard_in_pieces() -> None:
     """Catches frames beyond the room that one call has."""
     sound = np.tile(voice(3.0), 4)

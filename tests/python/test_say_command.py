@@ -71,7 +71,8 @@ def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
 def test_another_language_needs_no_numpy(tmp_path: Path) -> None:
     """Right after `pip install`, with espeak-ng: it tells the phonemes, and its sound is left out."""
     code = ("import sys; sys.modules['numpy'] = None\n"
-            "from labial.__main__ import main; sys.exit(main(['say', '--language', 'de', 'Guten Morgen', '-o', 'x.lab']))")
+            "from labial.__main__ import main\n"
+            "sys.exit(main(['say', '--language', 'de', 'Guten Morgen', '-o', 'x.lab']))")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert [label for label, _ in labial.read_timings(tmp_path / "x.lab")][1] == "G"
