@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import json
 import math
+import random
 import subprocess
 import sys
 import time
@@ -76,6 +77,23 @@ def test_how_early_a_phoneme_must_be_known(lead: float, exact: bool) -> None:
         for sound in SOUNDS:
             voice.push(*sound)
         assert (frames == played(voice, 0, 1.98)) == exact
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_in_time_is_what_render_makes(seed: int) -> None:
+    """Up to 150 ms before the end of the last sound, bit for bit, and not to the end, as docs/streams.md says."""
+    numbers = random.Random(seed)
+    sounds = [name for name in labial.speech_en.phonemes if name != "SIL"]
+    timings = [(numbers.choice(sounds), numbers.randrange(20, 300)) for _ in range(20)]
+    with labial.Voice() as voice:
+        moment = 0
+        for label, milliseconds in timings:
+            voice.push(label, moment / 1000, (moment + milliseconds) / 1000)
+            moment += milliseconds
+        frames = played(voice, 0, moment / 1000)
+    exact = math.ceil((moment - 150) / 20)
+    wanted = labial.render(timings)
+    assert frames[:exact] == wanted[:exact] and frames != wanted[: len(frames)]
 
 
 def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
