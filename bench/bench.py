@@ -56,6 +56,7 @@ def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
         attempt(hearing.measure_words, board, heard)
     attempt(sizes.esp32_hear)
     attempt(sizes.uno)
+    attempt(sizes.uno_beside)
     print("Host: speed, instructions, equation 3, loss", flush=True)
     attempt(host.measure, compiler)
     attempt(host.python, compiler)

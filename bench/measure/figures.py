@@ -14,6 +14,7 @@ from measure import baseline, records
 from measure.boards import BOARDS
 from measure.core import Figure
 from measure.pages import Sentence, count, decimal, row, sentence, share, word
+from measure.sizes import BESIDE
 from measure.sources import Sources, Table, number
 
 #: Columns of the boards' tables, and the host's.
@@ -161,11 +162,21 @@ def _closeness(diff: Dict[str, str], other: Dict[str, str], *unseen: Dict[str, s
             share(number(other["amplitude"])), share(closed) if closed < 1 else decimal(closed, 2)]
 
 
-#: What pages fetch from npm, compressed, in bench/baseline.json.
 #: The files of labial/words.h.
 _WORDS = ("words", "words_characters", "words_dates", "words_letters", "words_numbers", "words_text", "words_time")
+#: The files of labial/voice.h.
+_VOICE = ("voice", "voice_frames", "voice_items", "voice_messages", "voice_plan", "voice_words")
+#: What pages fetch from npm, compressed, in bench/baseline.json.
 _NPM = ("a page that speaks, each script compressed", "laughter, compressed", "words, each script compressed",
         "hearing by the small model, each script compressed", "hearing by the large model, each script compressed")
+
+
+#: The states in DESIGN.md's table of modules: what it says of their parts, and of RAM beside the state.
+_STATES = {"labial_t": ("", " + workspace"),
+           "labial_hear_t": (": features, network, convert, motion, fade", " + workspace"),
+           "labial_words_t": ("", ""), "labial_laugh_t": ("", ""), "labial_timings_t": ("", ""),
+           "labial_voice_t": (": items, plan, stream", " + workspace + 16 for each item"),
+           "labial_beside_t": ("", " + ring"), "labial_face_t": ("", " + ring"), "labial_clock_t": ("", "")}
 
 
 def design(source: Sources) -> Iterator[Sentence]:
@@ -184,6 +195,8 @@ def design(source: Sources) -> Iterator[Sentence]:
                        bench("speech: mean"), bench("speech: viterbi.c"),
                        bench("speech: trajectory.c"), bench("speech: shape.c"))))
     yield sentence("`LABIAL_WINDOW` = {} frames ahead", count(source.limit("LABIAL_WINDOW")))
+    for state, (parts, more) in _STATES.items():
+        yield sentence(f"`{state}`{parts} | {{}}{more} |", count(bench(state)))
     streams = (source.root / "tests" / "conformance" / "streams.txt").read_text(encoding="utf-8")
     yield sentence("| every target | {} conformance streams", count(streams.count("\nstream ")))
 
@@ -197,6 +210,11 @@ def method(source: Sources) -> Iterator[Sentence]:
     yield sentence("In the {} p, b, m the published method leaves the lips {} to {} FAP units apart, Labial {} to {},",
                    word(int(pictured["speech_en count"])),
                    *(count(pictured[f"{who} {end}"]) for who in ("paper", "speech_en") for end in ("least", "most")))
+    for title, letter, figure in (("instructions, mean per frame", "262,521", "speech: mean"),
+                                  ("instructions, longest tick", "5,902,301", "speech: worst tick"),
+                                  ("workspace, bytes", "4,960", "speech: workspace"),
+                                  ("stack, bytes", "1,248", "stack -Os: all of lib")):
+        yield sentence(f"| {title} | {letter} | {{}} |", count(source.bench(figure)))
     for name in ("LAG", "SEARCHED"):
         yield sentence(f"`LABIAL_{name}` (default {{}})", count(source.limit(f"LABIAL_{name}")))
 
@@ -297,8 +315,11 @@ def beside(source: Sources) -> Iterator[Sentence]:
     yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB | {} ms of sound "
                    "ahead |", _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1),
                    source.latency())
-    yield sentence("| flash, bytes | {}, and 266 for a division of 32 bits | {} |",
-                   *(count(source.bench("code -Os: beside.c", target)) for target in ("m0", "m4")))
+    yield sentence("| flash, bytes | {}, and 266 for a division of 32 bits | {} | {}, and divisions |",
+                   *(count(source.bench("code -Os: beside.c", target)) for target in ("m0", "m4", "uno")))
+    yield sentence("| RAM, bytes, 128 frames ahead | {} | {} | {} |",
+                   *(count(source.bench(BESIDE, target)) for target in ("m0", "m4", "uno")))
+    yield sentence("and the library's clock {};", count(source.bench("code -Os: clock.c", "m4")))
 
 
 def hearing(source: Sources) -> Iterator[Sentence]:
@@ -395,6 +416,9 @@ def servos(source: Sources) -> Iterator[Sentence]:
         head = " | ".join("none" if part == "-" else part for part in (slew, acceleration))
         empty = " | |" if pair == "- -" else ""
         yield sentence(f"| {head} | {{}} ({{}}) |{empty}" + " {} ({}) |" * (len(sights) - 1), *cells)
+    yield sentence("The code of `face.c` that such a program links has {} KB on a Cortex-M0, and with what it needs of "
+                   "`rig.c` {} KB;", *(_kilobytes(source.bench(f"code -Os: a face, {what}"), 1) for what in
+                                       ("of face.c", "with rig.c and fixed.c")))
     baked = [other[f"{pair} 32: closed"] for pair in limits]
     yield sentence("Of {} *p, b, m* of flite's voice awb, `labial bake` closes at least {} % at each of these limits",
                    count(other["stops"]), count(100 * min(baked)))
@@ -493,6 +517,15 @@ def _laughter(diff: Table, other: Table) -> Iterator[Sentence]:
                    *shares("seam, mean", HMM, DEVICE, "synthetic original"))
 
 
+def streams(source: Sources) -> Iterator[Sentence]:
+    """docs/streams.md."""
+    code = sum(source.bench(f"code -Os: {name}.c", "m4") for name in _VOICE)
+    yield sentence("It needs {} KB of RAM for the follower, its stream included, {} bytes of workspace, {} bytes of "
+                   "stack, and 16 bytes for each phoneme", _kilobytes(source.bench("labial_voice_t", "m4"), 1),
+                   count(source.bench("speech: workspace", "m4")), count(source.bench("stack -Os: voice.h", "m4")))
+    yield sentence("twice as much for a word; {} KB of code (Cortex-M4, `-Os`)", _kilobytes(code, 1))
+
+
 #: Every page with figures.
 PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "README.md": readme,
@@ -512,5 +545,6 @@ PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "docs/python.md": python,
     "docs/reproduction.md": reproduction,
     "docs/servos.md": servos,
+    "docs/streams.md": streams,
     "docs/words.md": words,
 }

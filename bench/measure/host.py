@@ -103,7 +103,8 @@ def npm(bench: Bench) -> None:
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "web" / "labial.wasm"
-    names = ("index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js", "unpack.js")
+    names = ("heard.js", "index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
+             "unpack.js")
     scripts = [folder / "npm" / name for name in names]
     laughter = folder / "npm-laughter" / "index.js"
     bench.add("wasm", "module with speech", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)

@@ -1,5 +1,5 @@
-"""Bytes of code, of tables and of RAM, by compiling for each board; also of the examples that docs/esp32-hear.md and
-docs/arduino.md give sizes of."""
+"""Bytes of code, of tables and of RAM, by compiling for each board; also of what docs/esp32-hear.md, docs/arduino.md
+and docs/beside.md give sizes of."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ FACE = ("labial_face_init", "labial_face_frame", "labial_face_due", "labial_face
 #: The bundled models: their C file, and their names here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
 
+#: What an Arduino's processor is measured with, too.
+BESIDE = "beside, one output, 128 frames ahead"
 
 #: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the voice, except for
 #: rounding to four.
@@ -38,6 +40,13 @@ PARTS = {
     "workspace: frames": "(STRIDE + LABIAL_LAG) * sizeof(labial_frame_t)",
     "workspace: motion": "STRIDE * COUNT * sizeof(int16_t)",
     "workspace: shapes": "2 * COUNT * sizeof(labial_shape_t)",
+}
+
+#: States of the modules beside the stream, and lips beside the audio with one output and 128 frames ahead, in C.
+STATES = {
+    **{f"labial_{name}_t": f"sizeof(labial_{name}_t)" for name in
+       ("hear", "words", "voice", "laugh", "timings", "beside", "face", "clock")},
+    BESIDE: "sizeof(labial_beside_t) + LABIAL_BESIDE_SIZE(1, 128)",
 }
 
 #: Frames that share a state in the voice, and its channels.
@@ -135,13 +144,15 @@ def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
 
 def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_version: str) -> None:
     source, out = scratch / "ram.c", scratch / "ram.o"
-    lines = [f'#include "{stem}.h"' for stem in MODELS.values()]
+    headers = [name[len("labial_") : -len("_t")] for name in STATES if name != BESIDE]
+    lines = [f'#include "{stem}.h"' for stem in (*MODELS.values(), *(f"labial/{name}" for name in headers))]
     lines.append("char stream[sizeof(labial_t)];")
     lines += [f"char {model}[{stem.upper()}_WORKSPACE_SIZE];" for model, stem in MODELS.items()]
     same = f"{MODELS['speech'].upper()}_WORKSPACE_SIZE == LABIAL_WORKSPACE_SIZE({STRIDE}, {COUNT})"
     lines.append(f"typedef char sizes_are_those_of_the_voice[{same} ? 1 : -1];")
     lines += [f"#define STRIDE {STRIDE}", f"#define COUNT {COUNT}"]
-    lines += [f"char part_{i}[{size}];" for i, size in enumerate(PARTS.values())]
+    parts = {**PARTS, **STATES}
+    lines += [f"char part_{i}[{size}];" for i, size in enumerate(parts.values())]
     source.write_text("\n".join(lines) + "\n", encoding="ascii")
     command = [*command, f"-I{bench.source / 'lib' / 'models'}", str(source)]
     run([*command, "-o", out])
@@ -149,7 +160,7 @@ def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ver
     found = {line.split()[-1]: int(line.split()[1], 16) for line in listing}
     shown = [f"{board.prefix}nm", "-S", "of", "an", "array", "of", "that", "size"]
     bench.add(board.preset, "labial_t", found["stream"], "bytes", shown, tool_version)
-    for i, part in enumerate(PARTS):
+    for i, part in enumerate(parts):
         bench.add(board.preset, part, found[f"part_{i}"], "bytes", shown, tool_version)
     for model in MODELS:
         bench.add(board.preset, f"{model}: workspace", found[model], "bytes", shown, tool_version)
@@ -195,3 +206,19 @@ def uno(bench: Bench) -> None:
     for figure, value, path in (("program without its motion", bytes_of("program") - int(motion[2]), jaw),
                                 ("player", bytes_of("with") - bytes_of("without"), player)):
         bench.add("uno", figure, value, "bytes", [*command, path, "&&", size, "a.out"], version(compiler))
+
+
+def uno_beside(bench: Bench) -> None:
+    """lib/beside.c for an Arduino Uno, which has no room for the other modules, and its RAM."""
+    what = "Lips beside the audio on an Arduino Uno"
+    compiler, size = (tool(name, "gcc-avr", what) for name in ("avr-gcc", "avr-size"))
+    command = [compiler, "-mmcu=atmega328p", "-Os", "-std=c99", f"-I{bench.source / 'include'}", "-c"]
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+        ram = Path(scratch) / "ram.c"
+        ram.write_text(f'#include "labial/beside.h"\nchar ram[{STATES[BESIDE]}] = {{ 1 }};\n', encoding="ascii")
+        for figure, path, kind in (("code -Os: beside.c", bench.source / "lib" / "beside.c", "text"),
+                                   (BESIDE, ram, "data")):
+            out = Path(scratch) / f"{path.stem}.o"
+            run([*command, path, "-o", out])
+            shown = [*command, ram.name if path == ram else path, "&&", size, out.name]
+            bench.add("uno", figure, sections(size, out)[kind], "bytes", shown, version(compiler))
