@@ -45,8 +45,8 @@ def passed_modules(report: Path) -> Set[str]:
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist looks at the groups
 def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item]) -> None:
     """Groups the tests of some modules (``--dist loadgroup``), and gives those of others more tries. Leaves the slow
-    tests out, but where LABIAL_REQUIRE_ALL is set in the environment and LABIAL_SLOW is not OFF; there LABIAL_PASSED may
-    name the report of a run without them, whose passed modules are left to it."""
+    tests out, but where LABIAL_REQUIRE_ALL is set in the environment and LABIAL_SLOW is not OFF; there LABIAL_PASSED
+    may name the report of a run without them, whose passed modules are left to it."""
     for item in items:
         if item.path.stem in TOGETHER:
             item.add_marker(pytest.mark.xdist_group(item.path.stem))
