@@ -2,9 +2,9 @@
  * words_en.c - how words sound, for labial/words.h. Written by labial export 0.4.0; do not edit.
  *
  * How long phonemes last was measured in speech of LibriSpeech (c) 2014 Vassil Panayotov and others and
- * LibriTTS (c) 2019 Heiga Zen and others, CC BY 4.0, https://www.openslr.org; the CSTR VCTK Corpus 0.92 (c) 2019 Junichi Yamagishi
- * and others, CC BY 4.0, https://datashare.ed.ac.uk/handle/10283/3443; CMU ARCTIC (c) 2003 Carnegie Mellon University,
- * John Kominek and Alan W Black, http://festvox.org/cmu_arctic.
+ * LibriTTS (c) 2019 Heiga Zen and others, CC BY 4.0, https://www.openslr.org; the CSTR VCTK Corpus 0.92 (c) 2019 Junichi
+ * Yamagishi and others, CC BY 4.0, https://datashare.ed.ac.uk/handle/10283/3443; CMU ARCTIC (c) 2003 Carnegie Mellon
+ * University, John Kominek and Alan W Black, http://festvox.org/cmu_arctic.
  *
  * Trained on the CMU Pronouncing Dictionary, which comes with this notice:
  *
