@@ -3,37 +3,59 @@
 from __future__ import annotations
 
 import logging
+import math
+import time
 from collections import deque
-from typing import Any, Deque, List, Optional, Tuple
+from typing import Any, Deque, List, Optional, Tuple, Union
 
+from labial.core.library import CANCEL_MAX
 from labial.errors import LabialError
-from labial.files.faps import CHANNELS
+from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.runtime.hearing import FPS, Hearing
 from labial.runtime.stream import Frame
 from labial.runtime.voice import Voice
+from labial.tables.visemes import ONE, VISEMES
 
 _logger = logging.getLogger("labial")
 
-_NEUTRAL = (0,) * CHANNELS
-#: From words to sound, and back, lips fade over so many frames.
+#: From words to sound, and back, from sound to sound and to rest, lips fade over so many frames.
 _FADE = 8
+#: Lips that are apart meet for a p, b or m in so many frames, where a fade would take longer.
+_MEET = 3
+#: Jaw and lips, which have to meet.
+_LIPS = frozenset(map(FAP_NUMBERS.index, (3, 51, 52, 55, 56, 57, 58)))
+_PRESSED = list(VISEMES).index("PP")
+#: The neutral face.
+_NEUTRAL = Frame(-1, (0,) * CHANNELS, (ONE, *[0] * (len(VISEMES) - 1)))
 #: Seconds from the end of a sound until lips are at rest.
-_REST = 0.5
+REST = 0.5
+#: Seconds for which a clock stands until lips ease to rest.
+_PATIENCE = 0.1
 
 
 class Lips(Voice):
     """A :class:`labial.Voice`, and beside it the sound, which is heard where no words are known.
 
     An utterance without words so far moves by :class:`labial.Hearing`. Its sound is heard when it is due, so that
-    sound that has words costs nothing. All arguments are those of :class:`labial.Voice`.
+    sound that has words costs nothing. Where the clock stands, as in a pause, the mouth closes. All arguments are those
+    of :class:`labial.Voice`.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._sounds: Deque[_Sound] = deque()
-        self._last: Tuple[int, ...] = _NEUTRAL  # the lips that were heard last
-        self._share = 0  # of the lips that are heard, in steps of a fade
+        self._fade = _Fade()
+        self._source: Union[None, Frame, _Sound] = None  # what the lips follow: words, _NEUTRAL, or a sound
+        self._closing = 0  # frames of a cancel that are to come, until the next utterance begins
+        self._begins = 0.0
+        self._moved = 0.0  # the time at which the clock moved last
+        self._has_stood = False  # since the frame before
         self._level: Optional[int] = None  # of the voice, as hearing found it
+
+    def begin(self, at: Optional[float] = None, utterance: Optional[str] = None) -> None:
+        """The next utterance, as :meth:`labial.Voice.begin`."""
+        super().begin(at, utterance)
+        self._begins = self.time if at is None else at
 
     def begin_sound(self, at: float) -> None:
         """The next utterance, whose sound begins when `at` seconds were heard."""
@@ -60,29 +82,91 @@ class Lips(Voice):
         """Drops all that was not shown yet, and eases to the neutral face."""
         super().cancel(milliseconds)
         self._sounds.clear()
+        self._closing = min(max(math.ceil(milliseconds * self.fps / 1000 - 1e-6), 1), CANCEL_MAX)
+        self._begins = math.inf
+        self._source = _NEUTRAL
+        self._fade.begin(self._closing)
 
     def played(self, seconds: Optional[float]) -> List[Frame]:
-        """The frames that became due since the last call, as :meth:`labial.Voice.played`."""
-        return [self._mixed(frame) for frame in super().played(seconds)]
+        """The frames that became due since the last call, as :meth:`labial.Voice.played`. Where the clock stands for a
+        tenth of a second, the face comes to rest in time that passes; when it moves again, lips fade in, and of the
+        frames that are due then the latest alone is returned."""
+        before = self._heard
+        due = super().played(seconds)
+        if due and self._has_stood:
+            due, self._has_stood = due[-1:], False
+        frames = [self._mixed(frame) for frame in due]
+        now = time.monotonic()
+        if frames or self._heard > before:
+            self._moved = now
+        elif now - self._moved >= _PATIENCE and any(self._fade.shown.faps):
+            self._moved += 1 / self.fps
+            self._has_stood = True
+            frames.append(self._toward(_NEUTRAL, self._fade.shown.number, _NEUTRAL))
+        return frames
 
     @property
     def done(self) -> bool:
         """Whether nothing more will move: after :meth:`finish`, when words and sounds are over."""
-        return super().done and not self._share and all(sound.is_over(self.time) for sound in self._sounds)
+        return super().done and self._fade.is_over and all(sound.is_over(self.time) for sound in self._sounds)
 
     def _mixed(self, frame: Frame) -> Frame:
         """A frame of the words, or that of the sound where there are none."""
         moment = frame.number / self.fps + 1e-6
         while len(self._sounds) > 1 and self._sounds[1].at <= moment:
             self._level = self._sounds.popleft().level or self._level
-        sound = self._sounds[0] if self._sounds and self._sounds[0].at <= moment else None
-        heard = None if sound is None or sound.has_words else sound.lips(moment, self._level)
-        self._share += 1 if heard and self._share < _FADE else -1 if not heard and self._share else 0
-        self._last = heard or self._last
-        if not self._share:
-            return frame
-        return Frame(frame.number, tuple(
-            (one * (_FADE - self._share) + other * self._share) // _FADE for one, other in zip(frame.faps, self._last)))
+        if self._sounds and self._sounds[0].at <= moment:
+            sound = self._sounds[0]
+            heard = None if sound.has_words else sound.lips(moment, self._level)
+            if heard:
+                return self._toward(sound, frame.number, heard)
+        if self._closing and moment < self._begins:
+            self._closing -= 1
+            return self._toward(_NEUTRAL, frame.number, _NEUTRAL)
+        return self._toward(None, frame.number, frame)
+
+    def _toward(self, source: Union[None, Frame, _Sound], number: int, aim: Frame) -> Frame:
+        """The next pose, which follows `source` or fades to it."""
+        if source is not self._source:
+            self._source = source
+            self._fade.begin(_FADE)
+        return self._fade.to(Frame(number, aim.faps, aim.visemes))
+
+
+class _Fade:
+    """The way from what is shown to other motion, in even steps."""
+
+    def __init__(self) -> None:
+        self.shown = self._start = _NEUTRAL
+        self._step = self._length = 0
+        self._apart = 0.0  # what is left of the way of jaw and lips
+
+    @property
+    def is_over(self) -> bool:
+        return self._step == self._length
+
+    def begin(self, length: int) -> None:
+        """The way begins, and takes so many frames."""
+        self._start = self.shown
+        self._step, self._length, self._apart = 0, length, 1.0
+
+    def to(self, aim: Frame) -> Frame:
+        """The next frame on the way to this one."""
+        if not self.is_over:
+            self._step += 1
+            left = 1 - self._step / self._length
+            meets = aim.visemes[_PRESSED] >= ONE // 2
+            self._apart = max(0.0, min(left, self._apart - 1 / _MEET if meets else self._apart))
+            shares = [self._apart if channel in _LIPS else left for channel in range(CHANNELS)]
+            aim = Frame(aim.number, _between(aim.faps, self._start.faps, shares),
+                        _between(aim.visemes, self._start.visemes, [left] * len(VISEMES)))
+        self.shown = aim
+        return aim
+
+
+def _between(one: Tuple[int, ...], other: Tuple[int, ...], shares: List[float]) -> Tuple[int, ...]:
+    """`one` with these shares of `other`."""
+    return tuple(math.floor(a + (b - a) * share + 0.5) for a, b, share in zip(one, other, shares))
 
 
 class _Sound:
@@ -101,7 +185,7 @@ class _Sound:
         self._first, self._origin = 0, at  # the ears' frame, and its time, from which on frames count
         self._count = 0  # frames since then
         self._frames: Deque[Frame] = deque()  # that are not due
-        self._shown: Optional[Tuple[int, ...]] = None
+        self._shown: Optional[Frame] = None
 
     def add(self, samples: bytes, sample_rate: int, channels: int) -> None:
         """The next piece."""
@@ -117,9 +201,9 @@ class _Sound:
 
     def is_over(self, moment: float) -> bool:
         """Whether nothing of it is left to be seen."""
-        return self.has_words or self._is_deaf or moment > self.at + self._length + _REST
+        return self.has_words or self._is_deaf or moment > self.at + self._length + REST
 
-    def lips(self, moment: float, level: Optional[int]) -> Optional[Tuple[int, ...]]:
+    def lips(self, moment: float, level: Optional[int]) -> Optional[Frame]:
         """The lips when they are due; None where nothing is heard."""
         if self._ears is None and not self._is_deaf and self._blocks:
             self._listen(level)
@@ -138,7 +222,7 @@ class _Sound:
             self._keep(ears.end())
             self._has_ended, self.level = True, ears.level
         while self._frames and self._time(self._frames[0]) <= moment:
-            self._shown = self._frames.popleft().faps
+            self._shown = self._frames.popleft()
         return None if self._has_ended and not self._frames else self._shown
 
     def _keep(self, frames: List[Frame]) -> None:
