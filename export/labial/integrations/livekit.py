@@ -8,7 +8,7 @@
 
 They follow the words that the speech service times, which come with the sound as TimedStrings if its capability
 aligned_transcript is true. Where none come, they follow the sound (:class:`labial.Hearing`). An interruption closes the
-mouth.
+mouth, and so does a pause.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from livekit.agents.types import USERDATA_TIMED_TRANSCRIPT
 from livekit.agents.utils import is_given
 from livekit.agents.voice.io import AudioOutput, AudioOutputCapabilities
 
-from labial.integrations.lips import Lips
+from labial.integrations.lips import REST, Lips
 from labial.runtime.stream import Frame
 
 
@@ -44,7 +44,9 @@ class LipsOutput(AudioOutput):
         self._segment = False  # within the sound between two flushes
         self._origin = self._queued = 0.0  # seconds of the clock: where the latest segment begins and ends
         self._at, self._moment = 0.0, 0.0  # the clock, and the time at which it was there
-        self._begun = self._paused = False
+        self._begun = False  # any sound was heard
+        self._started = True  # and of the latest segment, too
+        self._paused = False
 
     # ---- Sound on its way
 
@@ -54,9 +56,11 @@ class LipsOutput(AudioOutput):
         if self._rest is not None:
             await self._rest
         if not self._segment:
-            self._segment = True
             self._origin = self._queued = max(self._queued, self.clock() or 0.0)
+            self._segment, self._started = True, False
             self.voice.begin_sound(self._origin)
+        elif self._begun and self.clock() == self._queued:  # it comes late
+            self._at, self._moment = self._queued, time.time() + self._delay
         for text in frame.userdata.get(USERDATA_TIMED_TRANSCRIPT, []):
             # Of a sentence, whose end is not given, the sound says more.
             if is_given(text.start_time) and is_given(text.end_time) and len(text.split()) == 1:
@@ -94,8 +98,10 @@ class LipsOutput(AudioOutput):
         super().pause()
 
     def resume(self) -> None:
-        """Lets it run again. Agents also call it where there was no pause."""
+        """Lets it run again, behind what the pause took. Agents also call it where there was no pause."""
         self._hold()
+        if self._paused and self._started:
+            self._at = max(self._at, self._origin + self._passed() - self._delay)
         self._paused = False
         super().resume()
 
@@ -104,19 +110,22 @@ class LipsOutput(AudioOutput):
     def on_playback_started(self, *, created_at: float) -> None:
         """The sink tells when a segment begins to be heard."""
         super().on_playback_started(created_at=created_at)
-        self._at, self._moment, self._begun = self._origin, created_at + self._delay, True
+        self._at, self._moment, self._begun, self._started = self._origin, created_at + self._delay, True, True
 
-    def on_playback_finished(self, **told: Any) -> None:
+    def on_playback_finished(self, *, playback_position: float, interrupted: bool, **told: Any) -> None:
         """Behind the sound the clock runs on, so that lips come to rest."""
-        super().on_playback_finished(**told)
+        super().on_playback_finished(playback_position=playback_position, interrupted=interrupted, **told)
         self._hold()
-        self._moment = time.time()
+        if self._paused and self._started and not interrupted:  # the sink played on to the end; lips are at rest there
+            self._at = max(self._at, self._queued + REST)
 
     def clock(self) -> Optional[float]:
-        """Seconds that were heard."""
+        """Seconds that were heard. Until the sink tells that a segment is heard, it waits where that begins; and where
+        sound is missing, until more comes."""
         if not self._begun:
             return None
-        return self._at if self._paused else max(self._at, self._at + time.time() - self._moment)
+        now = self._at if self._paused else max(self._at, self._at + time.time() - self._moment)
+        return min(now, self._origin if not self._started else self._queued if self._segment else now)
 
     def __aiter__(self) -> AsyncIterator[Frame]:
         return self.voice.follow(self.clock)
@@ -125,6 +134,15 @@ class LipsOutput(AudioOutput):
         self._at, self._moment = self.clock() or 0.0, time.time()
 
     # ---- The sink
+
+    def _passed(self) -> float:
+        """Seconds of the segment that a room's output has left behind. In a pause it drops what it has queued, up to a
+        quarter of a second, and tells that only when the next stretch was heard: so its own counts are read."""
+        sink = self._sink
+        while sink.next_in_chain is not None:
+            sink = sink.next_in_chain
+        source = getattr(sink, "_audio_source", None)
+        return getattr(sink, "_source_pushed_duration", 0.0) - getattr(source, "queued_duration", 0.0)
 
     @property
     def _sink(self) -> AudioOutput:
