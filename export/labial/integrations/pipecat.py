@@ -5,7 +5,7 @@
     lips = LipsProcessor(show)
     pipeline = Pipeline([..., tts, lips, transport.output(), lips.heard])
 
-`lips` reads words and sound on their way to the transport. `lips.heard`, behind it, sees each piece of sound that was
+`lips` reads words and sound on their way to the transport. `lips.heard`, behind it, sees each piece of speech that was
 played, and passes a LipsFrame on for each frame of the mouth; `show`, if given, is called with the same frame. Where a
 service times no words (TTSTextFrames without pts), lips follow its sound (:class:`labial.Hearing`). An interruption
 closes the mouth, and what is left of the interrupted answer is ignored.
@@ -26,7 +26,6 @@ from pipecat.frames.frames import (
     EndFrame,
     Frame,
     InterruptionFrame,
-    OutputAudioRawFrame,
     StartFrame,
     TTSAudioRawFrame,
     TTSStartedFrame,
@@ -38,19 +37,25 @@ from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
 from labial.integrations.lips import Lips
 from labial.runtime import stream
 
+#: Milliseconds in which the mouth closes when a pipeline is cancelled.
+_CLOSING = 200
+
 Show = Callable[[stream.Frame], Awaitable[None]]
 
 
 @dataclass
 class LipsFrame(DataFrame):
-    """The mouth when it is due: 13 FAPs; ``labial.Rig("arkit").apply(frame.faps)`` makes blendshapes of them."""
+    """The mouth when it is due: 13 FAPs, and the shares of the sounds that it shows (:class:`labial.Frame`);
+    ``labial.Rig("arkit").apply(frame.faps, visemes=frame.visemes)`` makes blendshapes of them."""
 
     number: int
     faps: Tuple[int, ...]
+    visemes: Tuple[int, ...] = ()
 
 
 class _Clock:
-    """How much of the sound was heard. Sounds that follow each other are one; behind the last one the clock runs on."""
+    """How much of the speech was heard. Sounds that follow each other are one; behind the last one the clock runs on,
+    up to where the sound of a context begins that waits."""
 
     def __init__(self, delay: float) -> None:
         self.starts: Deque[float] = deque()  # of contexts that were not heard yet
@@ -62,10 +67,12 @@ class _Clock:
         if not self._begun:
             return None
         now = self._at + time.monotonic() - self._moment
-        return now if self._idle else min(now, self._total + max(0.0, -self._delay))
+        if not self._idle:
+            return min(now, self._total + max(0.0, -self._delay))
+        return min(now, max(self._at, self.starts[0])) if self.starts else now
 
     def play(self, seconds: float) -> None:
-        """A piece of sound was handed to the listener's device."""
+        """A piece of speech was handed to the listener's device."""
         at = self._total
         if self._idle or not self._begun:
             if not self.starts:  # what an interruption left
@@ -97,7 +104,8 @@ class LipsProcessor(FrameProcessor):
         self._queued = 0.0  # seconds of the clock up to which there is sound
         self._context: Optional[Tuple[Any]] = None  # the service's, whose words count from `_origin`
         self._over: Optional[str] = None  # the context that was interrupted
-        self._origin = self._last = 0  # nanoseconds
+        self._origin = self._last = 0  # nanoseconds: where the context begins, and the latest word of all
+        self._word: Optional[str] = None  # the context's latest
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         """Tells the voice what passes."""
@@ -107,8 +115,7 @@ class LipsProcessor(FrameProcessor):
         elif isinstance(frame, TTSStoppedFrame):
             self.voice.end_sound()
         elif isinstance(frame, TTSTextFrame) and frame.pts and self._enter(frame.context_id):
-            self._last = frame.pts
-            self.voice.say(frame.text, max(0, frame.pts - self._origin) / 1e9)
+            self._say(frame.text, frame.pts)
         elif isinstance(frame, TTSAudioRawFrame) and self._enter(frame.context_id):
             self.voice.sound(frame.audio, frame.sample_rate, frame.num_channels)
             self._queued += frame.num_frames / frame.sample_rate
@@ -128,12 +135,22 @@ class LipsProcessor(FrameProcessor):
             return False
         if self._context == (context,):
             return True
-        self._context = (context,)
+        self._context, self._word = (context,), None
         self._origin = max(self._last, self.get_clock().get_time())
         self._queued = max(self._queued, self._clock() or 0.0)
         self._clock.starts.append(self._queued)
         self.voice.begin_sound(self._queued)
         return True
+
+    def _say(self, text: str, moment: int) -> None:
+        """A word. Where a service leaves words out, Pipecat sends the rest of the text with the time of the last word:
+        that word is said again, together with the rest. Where no word of a context is timed, the sound says more."""
+        if self._word is None and moment <= self._origin and len(text.split()) > 1:
+            return
+        if self._word is not None and moment == self._last:
+            text = f"{self._word} {text}"
+        self._last, self._word = moment, text
+        self.voice.say(text, max(0, moment - self._origin) / 1e9)
 
 
 class _Heard(FrameProcessor):
@@ -146,10 +163,12 @@ class _Heard(FrameProcessor):
 
     async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
         """Keeps the clock."""
+        if isinstance(frame, CancelFrame):  # behind which nothing can be pushed
+            await self._close()
         await super().process_frame(frame, direction)
         if isinstance(frame, StartFrame):
             self._task = self.create_task(self._follow())
-        elif isinstance(frame, OutputAudioRawFrame):
+        elif isinstance(frame, TTSAudioRawFrame):
             self._clock.play(frame.num_frames / frame.sample_rate)
         elif isinstance(frame, BotStoppedSpeakingFrame):
             self._clock.stop()
@@ -157,8 +176,17 @@ class _Heard(FrameProcessor):
             await self.cancel_task(self._task)
         await self.push_frame(frame, direction)
 
+    async def _close(self) -> None:
+        """Leads the mouth to rest."""
+        if self._clock() is None or self._voice.done:
+            return
+        self._voice.cancel(_CLOSING)
+        late = time.monotonic() + 2 * _CLOSING / 1000
+        while not self._voice.done and time.monotonic() < late:
+            await asyncio.sleep(1 / self._voice.fps)
+
     async def _follow(self) -> None:
         async for frame in self._voice.follow(self._clock):
-            await self.push_frame(LipsFrame(frame.number, frame.faps))
+            await self.push_frame(LipsFrame(frame.number, frame.faps, frame.visemes))
             if self._show:
                 await self._show(frame)
