@@ -53,47 +53,32 @@ static uint32_t reciprocal(uint32_t d)
     return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
 }
 
-/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. */
-static unsigned headroom(uint32_t d)
+/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. Cores that do not count leading zeros go
+ * there from that of the row before, `hint`, which is near. */
+static inline unsigned headroom(uint32_t d, uint8_t *hint)
 {
-#if defined(__GNUC__) && (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
+#if !LABIAL_NARROW_MULTIPLY && defined(__GNUC__) &&                                                                    \
+    (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
+    (void)hint;
     return (unsigned)__builtin_clz(d) - 1u;
 #else
-    unsigned shift = 0;
-    if (d < (uint32_t)1 << 23) {
-        d <<= 8;
-        shift = 8;
-    }
-    if (d < (uint32_t)1 << 27) {
-        d <<= 4;
-        shift += 4;
-    }
-    while (d < (uint32_t)1 << 30) {
-        d <<= 1;
-        shift++;
+    unsigned shift = *hint;
+    uint32_t top;
+    while ((top = d >> (30u - shift)) != 1u) {
+        if (top)
+            shift--;
+        else
+            shift++;
+        *hint = (uint8_t)shift;
     }
     return shift;
 #endif
 }
 
-/* The same, tried first with that of the row before, `hint`. */
-static inline unsigned headroom_near(uint32_t d, uint8_t *hint)
-{
-#if LABIAL_NARROW_MULTIPLY
-    const uint32_t shifted = d << *hint;
-    if (shifted >> 30 != 1u || shifted >> *hint != d)
-        *hint = (uint8_t)headroom(d);
-    return *hint;
-#else
-    (void)hint;
-    return headroom(d);
-#endif
-}
-
-/* scaled / 2^(6 - shift) */
+/* scaled / 2^(6 - shift), which is 2^24 at most. */
 static inline uint32_t unscaled(int32_t scaled, unsigned shift)
 {
-    return shift < 6u ? (uint32_t)scaled >> (6u - shift) : (uint32_t)scaled << (shift - 6u);
+    return ((uint32_t)scaled << shift) >> 6;
 }
 
 /* 0 .. 2^24 as 16 bits, of which the largest stands for one. */
@@ -106,7 +91,7 @@ static uint16_t short_part(uint32_t part)
 /* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
 static int32_t filtered(labial_solver_t *solver, int32_t g)
 {
-    const unsigned shift = headroom_near((uint32_t)g, &solver->shifts[0]);
+    const unsigned shift = headroom((uint32_t)g, &solver->shifts[0]);
     const uint32_t inverse = reciprocal((uint32_t)g << shift);
     const uint32_t hold = (uint32_t)solver->hold << (shift + 1u); /* below 2^16 */
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
@@ -138,7 +123,7 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     q = filtered(solver, g);
 
     d = (uint32_t)(g + f + c * 65536);
-    shift = headroom_near(d, &solver->shifts[1]);
+    shift = headroom(d, &solver->shifts[1]);
     d <<= shift;
     inverse = reciprocal(d);
     rho = unscaled(labial_part24(g, inverse), shift);
@@ -184,7 +169,6 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
 {
     for (; count > 0; count--, frame++, own++) {
         const int is_first = frame->marks & LABIAL_BEGINS, is_last = frame->marks & LABIAL_ENDS;
-        const int contact = (int)(frame->contacts >> channel & 1u);
         if (is_first || is_last) { /* without deltas */
             if (is_first)
                 solver->row = solver->bent = solver->k1 = solver->k2 = solver->q1 = solver->q2 = solver->next_pull = 0;
@@ -200,7 +184,7 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
             solver->pull = solver->next_pull - 2 * terms->delta2_pull;
             solver->next_pull = terms->delta2_pull + terms->delta_pull;
         }
-        if (contact) {
+        if (frame->contacts >> channel & 1u) {
             solver->hold = (uint16_t)terms->contact_weight;
             solver->position = (terms->centre + frame->target[channel]) *
                                (terms->gain < LABIAL_GAIN_ONE ? terms->gain : LABIAL_GAIN_ONE);
@@ -223,17 +207,16 @@ static inline int32_t step_back(const labial_factors_t *at, int32_t m, int32_t m
 void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsigned wanted, unsigned place,
                             unsigned places, int16_t *motion)
 {
+    const labial_factors_t *const due = newest - ahead;
     int32_t m = newest->q, moved = 0;
-    for (; ahead > 0; ahead--) {
-        moved = step_back(--newest, m, moved);
-        m += moved;
-    }
     for (;;) {
-        motion[place] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
-        if (--wanted == 0)
-            return;
+        if (newest <= due) {
+            motion[place] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
+            if (--wanted == 0)
+                return;
+            place = place > 0 ? place - 1u : places - 1u;
+        }
         moved = step_back(--newest, m, moved);
         m += moved;
-        place = place > 0 ? place - 1u : places - 1u;
     }
 }
