@@ -16,16 +16,14 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
 {
     const labial_emission_t *emissions = channel->emissions;
     const unsigned states = model->state_count, size = searched(model);
-    unsigned low = 0, high = states;
-    while (low < high) {
+    unsigned low = 0, high = states - 1u;
+    while (low < high) { /* the next state is nearer where their middle lies below the position */
         const unsigned middle = (low + high) / 2u;
-        if (emissions[middle].mean < position)
+        if (emissions[middle].mean + emissions[middle + 1u].mean < 2 * position)
             low = middle + 1u;
         else
             high = middle;
     }
-    if (low >= states || (low > 0 && position - emissions[low - 1u].mean <= emissions[low].mean - position))
-        low--;
     low = low > size / 2u ? low - size / 2u : 0u;
     return low + size < states ? low : states - size;
 }
