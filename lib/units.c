@@ -65,10 +65,9 @@ int labial_units_uses(const labial_units_t *units, unsigned slot)
 /* The model's look-ahead in frames, for its kernels and for short contacts. */
 static unsigned look_ahead(const labial_model_t *model)
 {
-    const unsigned reach =
-        model->kernel_taps ? (model->kernel_taps - 1u - model->kernel_behind) * model->kernel_stride : 0u;
-    const unsigned contact = model->floor_count ? LABIAL_CONTACT_FRAMES : 0u;
-    return reach > contact ? reach : contact;
+    const int reach = (model->kernel_taps - 1 - model->kernel_behind) * model->kernel_stride; /* below 0 without taps */
+    const int contact = model->floor_count ? LABIAL_CONTACT_FRAMES : 0;
+    return (unsigned)(reach > contact ? reach : contact);
 }
 
 /* The middle of frame `frame` of `frames` from 0 to 1, Q14. */
@@ -104,12 +103,11 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
 {
     const labial_segment_t *segment = segment_at(units, 0);
     const labial_model_t *model;
-    uint32_t from = units->taken, head;
+    uint32_t from = units->taken + labial_units_left(units, models), head;
     unsigned i = 0, slot;
-    if (labial_units_left(units, models) > 0) { /* in a silence, or in the next segment */
-        head = head_of(segment, models[segment->slot]);
-        i = from > head;
-        from = i ? 0u : head;
+    if (from == segment->frames) { /* in the next segment */
+        i = 1;
+        from = 0;
     }
     if (i >= units->count)
         return 0;
@@ -122,16 +120,19 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     spoken->previous = spoken->next = model->silence;
     spoken->ms = segment->ms;
     if (head > 0) {
-        const uint16_t tail = (uint16_t)labial_quotient(look_ahead(model) * 1000u, model->frames_per_second);
+        const uint16_t tail = (uint16_t)labial_quotient((segment->frames - head) * 1000u, model->frames_per_second);
         spoken->ms = (uint16_t)(from < head ? segment->ms - tail : tail);
     }
     if (from == 0 && i > 0)
-        spoken->previous = phoneme_in(segment_at(units, i - 1u), slot, model->silence);
+        spoken->previous = phoneme_in(segment_at(units, 0), slot, model->silence);
     else if (from == 0 && !units->begins)
-        spoken->previous = units->before;
-    if (from >= head && i + 1u < units->count)
-        spoken->next = phoneme_in(segment_at(units, i + 1u), slot, model->silence);
-    return from < head || i + 1u < units->count || ended;
+        spoken->previous = units->labels[LABIAL_REACH];
+    if (from < head)
+        return 1;
+    if (i + 1u >= units->count)
+        return ended;
+    spoken->next = phoneme_in(segment_at(units, i + 1u), slot, model->silence);
+    return 1;
 }
 
 /* The label of the frame behind those that have one, the last of which is `before`; silence after the end of the
@@ -175,14 +176,13 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
 static int lies_open(uint32_t frame, uint32_t frames)
 {
     uint32_t held = (frames + 1u) / 2u;
+    int32_t before;
     if (frames >= LABIAL_CONTACT_LONG)
         return frames - frame > LABIAL_CONTACT_LAST;
     if (held < LABIAL_CONTACT_FRAMES)
         held = LABIAL_CONTACT_FRAMES;
-    if (frames <= held)
-        return 0;
-    frames = (frames - held) / 2u; /* those before it */
-    return frame < frames || frame >= frames + held;
+    before = ((int32_t)frames - (int32_t)held) >> 1; /* below 0 where there are less than those */
+    return frame - (uint32_t)before >= held;
 }
 
 /* Progress to rest in a pause, before its last frames, which lead to the next phoneme. */
@@ -194,20 +194,16 @@ static uint8_t rest_of(labial_units_t *units)
 }
 
 /* Advances to the next frame, of the next segment where this one ends; returns the marks of the accepted frame. */
-static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, int is_boundary, int is_last)
+static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, unsigned boundary, int is_last)
 {
-    unsigned marks = units->begins ? (unsigned)LABIAL_BEGINS : 0u;
+    unsigned marks = units->begins * (unsigned)LABIAL_BEGINS;
     units->begins = 0;
     units->taken++;
     units->frames--;
     if (units->taken < segment->frames)
         return marks;
-    if (is_last)
-        marks |= LABIAL_ENDS | LABIAL_UNIT_ENDS;
-    else if (is_boundary)
-        marks |= LABIAL_UNIT_ENDS;
+    marks |= is_last ? LABIAL_ENDS | LABIAL_UNIT_ENDS : boundary * (unsigned)LABIAL_UNIT_ENDS;
     units->begins = (uint8_t)is_last;
-    units->before = segment->phoneme;
     units->taken = 0;
     units->head = (uint8_t)(units->head + 1u < LABIAL_QUEUE ? units->head + 1u : 0u);
     units->count--;
@@ -220,7 +216,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
 {
     const labial_segment_t *segment = segment_at(units, 0);
     const labial_model_t *model;
-    uint32_t head, begin, end;
+    uint32_t head, frames, at = units->taken; /* its place in its phoneme, which has so many */
     unsigned ahead;
     int is_last; /* of its solution */
 
@@ -229,21 +225,24 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     model = models[segment->slot];
     ahead = look_ahead(model);
     head = head_of(segment, model);
-    is_last = units->count == 1u || segment_at(units, 1)->slot != segment->slot;
-    begin = units->taken < head ? 0u : head;
-    end = units->taken < head ? head : segment->frames;
-    if (!ended && begin == head && (units->count == 1u || units->frames <= ahead))
+    if (!ended && at >= head && (units->count == 1u || units->frames <= ahead))
         return LABIAL_STARVED;
 
     relabel(units, segment->slot, model->silence, ahead);
     taken->labels = units->labels + LABIAL_REACH;
     taken->slot = segment->slot;
-    taken->is_first = units->taken == begin;
-    taken->share = share_of(units->taken - begin, end - begin);
+    is_last = units->count == 1u || segment_at(units, 1)->slot != segment->slot;
+    frames = head;
+    if (at >= head) {
+        at -= head;
+        frames = segment->frames - head;
+    }
+    taken->is_first = at == 0;
+    taken->share = share_of(at, frames);
+    taken->is_open = (uint8_t)lies_open(at, frames);
     taken->rest = 0;
-    if (head > 0 && (begin < head || is_last))
+    if (units->taken < head || (head > 0 && is_last))
         taken->rest = rest_of(units);
-    taken->is_open = (uint8_t)lies_open(units->taken - begin, end - begin);
     taken->marks = (uint8_t)go_on(units, segment, model->phonemes[segment->phoneme].boundary, is_last);
 #if LABIAL_PAPER
     taken->marks = (uint8_t)(taken->marks | (taken->is_first ? LABIAL_PHONEME_BEGINS : 0));

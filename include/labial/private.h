@@ -22,7 +22,6 @@ typedef struct {
 /* The queue of phonemes that were pushed and whose frames are not all accepted yet (units.c). */
 typedef struct {
     uint8_t head, count;
-    uint8_t before;      /* phoneme in front of the oldest segment */
     uint8_t begins;      /* the next frame is the first of a solution */
     uint8_t rested;      /* the oldest segment is a pause that a solution began with */
     uint8_t labelled;    /* segments that have labels, the oldest ones */
