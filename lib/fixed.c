@@ -1,5 +1,5 @@
 /*
- * fixed.c - the one division (fixed.h).
+ * fixed.c - the one division, and the limits of positions (fixed.h).
  */
 #include "fixed.h"
 
@@ -26,4 +26,9 @@ uint32_t labial_quotient(uint32_t a, uint32_t b)
 #else
     return a / b;
 #endif
+}
+
+int16_t labial_position(int32_t position)
+{
+    return (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
 }

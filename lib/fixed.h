@@ -110,6 +110,9 @@ static inline int32_t labial_ease(unsigned step, unsigned steps)
     return (int32_t)(((s * s >> 14) * ((3u << 14) - 2u * s)) >> 14);
 }
 
+/* A position (labial/model.h), limited to +-LABIAL_POSITION_MAX. A function, which several places share. */
+int16_t labial_position(int32_t position);
+
 /* value, limited to +-limit. */
 static inline int32_t labial_clamp(int32_t value, int32_t limit)
 {

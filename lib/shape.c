@@ -10,8 +10,6 @@
 
 #define ONE 4096u /* the whole of a mixture, Q12 */
 
-#define FAR (2u * LABIAL_CONTACT_FRAMES) /* farther than contacts are looked for, frames */
-
 /* Largest z of a duration: over a thousand standard deviations, so that the widest component takes an endless pause. */
 #define DURATION_Z_MAX 65535u
 
@@ -45,56 +43,59 @@ static uint32_t likelihood_share(uint32_t part, uint32_t sum, uint32_t inverse)
 }
 
 /* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
-static unsigned score(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
-                      unsigned previous_class, unsigned next_class, uint32_t *costs, int16_t *deviations)
+static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken, uint32_t *costs, int16_t *deviations)
 {
-    const unsigned classes = model->class_count;
+    const labial_phoneme_t *phonemes = model->phonemes, *phoneme = &phonemes[spoken->phoneme];
+    const unsigned previous_class = phonemes[spoken->previous].viseme_class;
+    const unsigned next_class = phonemes[spoken->next].viseme_class;
+    uint32_t least = UINT32_MAX;
     unsigned c, best = 0;
     for (c = 0; c < phoneme->component_count; c++) {
         const unsigned index = phoneme->first_component + c;
         const labial_component_t *component = &model->components[index];
-        const int32_t distance = (int32_t)ms - component->duration_mean;
+        const int32_t distance = (int32_t)spoken->ms - component->duration_mean;
         const uint32_t z =
             labial_z((uint32_t)(distance < 0 ? -distance : distance), component->duration_gain, DURATION_Z_MAX);
         const int32_t reach = z < SLOPE_Z_MAX ? (int32_t)z : SLOPE_Z_MAX;
         uint32_t cost = component->cost + labial_z_cost(z);
         if (model->contexts) {
-            const uint8_t *context = model->contexts + (size_t)index * classes;
+            const uint8_t *context = model->contexts + (size_t)index * model->class_count;
             cost += (context[previous_class] & 15u) * 16u + (context[next_class] & 0xf0u);
         }
         costs[c] = cost;
         deviations[c] = (int16_t)(distance < 0 ? -reach : reach);
-        if (cost < costs[best])
+        if (cost < least) {
+            least = cost;
             best = c;
+        }
     }
     return best;
 }
 
-/* Finds what the shape of a phoneme between neighbours of the given viseme classes is mixed of: the best component alone,
- * or each by its likelihood, the best one having what rounding leaves. */
-static void select_components(const labial_model_t *model, const labial_phoneme_t *phoneme, uint16_t ms,
-                              unsigned previous_class, unsigned next_class, labial_selection_t *selection)
+/* Finds what the shape of a phoneme is mixed of: the best component alone, or each by its likelihood, the best one
+ * having what rounding leaves. */
+static void select_components(const labial_model_t *model, const labial_spoken_t *spoken, labial_selection_t *selection)
 {
-    const unsigned count = phoneme->component_count;
-    uint32_t costs[LABIAL_PHONEME_COMPONENTS_MAX], likelihoods[LABIAL_PHONEME_COMPONENTS_MAX];
+    const unsigned count = model->phonemes[spoken->phoneme].component_count;
+    uint32_t parts[LABIAL_PHONEME_COMPONENTS_MAX];     /* costs; then likelihoods, of the mixture */
     int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
-    const unsigned best = score(model, phoneme, ms, previous_class, next_class, costs, deviations);
-    uint32_t sum = 0, rest = ONE, inverse;
-    unsigned i, c = best, counting = 0;
+    const unsigned best = score(model, spoken, parts, deviations);
+    const uint32_t least = parts[best];
+    uint32_t sum = likelihood(0), rest = ONE, inverse; /* that of the best one, whose share comes last */
+    unsigned i, counting = 0;
     for (i = 0; i < count; i++) {
-        likelihoods[i] = model->mixture_mean || i == best ? likelihood(costs[i] - costs[best]) : 0u;
-        sum += likelihoods[i];
+        parts[i] = model->mixture_mean && i != best ? likelihood(parts[i] - least) : 0u;
+        sum += parts[i];
     }
-    /* The best one's likelihood alone is that. */
-    /*@ assert sum >= 32768; */
-    LABIAL_CHECK(sum >= 32768u);
     inverse = labial_quotient(0x80000000u, sum);
-    for (i = 1; i <= count; i++) {
-        uint16_t share;                   /* of the mixture, Q12 */
-        c = c + 1u < count ? c + 1u : 0u; /* the best one comes last */
-        share = (uint16_t)(i < count ? likelihood_share(likelihoods[c], sum, inverse) : rest);
+    for (i = 0; i <= count; i++) {
+        const unsigned c = i < count ? i : best;
+        const uint16_t share = (uint16_t)(i < count ? likelihood_share(parts[i], sum, inverse) : rest); /* Q12 */
         rest -= share;
         if (share > 0) {
+            /* The best one's likelihood is counted in the sum alone, and so it comes once. */
+            /*@ assert counting < 8; */
+            LABIAL_CHECK(counting < LABIAL_PHONEME_COMPONENTS_MAX);
             selection->components[counting] = (uint8_t)c;
             selection->shares[counting] = share;
             selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
@@ -103,13 +104,12 @@ static void select_components(const labial_model_t *model, const labial_phoneme_
     selection->count = (uint8_t)counting;
 }
 
-/* Mixes the channels of the first or second half of a phoneme's shape, the same at both knots. */
+/* Mixes every other channel of a phoneme's shape, the same at both knots. */
 static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, labial_selection_t *selection)
 {
     const unsigned count = selection->count, width = model->channel_count;
-    const unsigned half = (width + 1u) / 2u, end = selection->halves == 0 ? half : width;
     unsigned c, k;
-    for (k = selection->halves == 0 ? 0u : half; k < end; k++) {
+    for (k = selection->halves; k < width; k += 2u) {
         const labial_channel_t *channel = &model->channels[k];
         int32_t mean = 0, change = 0; /* in table steps, Q12 */
         for (c = 0; c < count; c++) {
@@ -129,47 +129,40 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
     }
 }
 
-static inline void shift_position(int16_t *position, int32_t change)
-{
-    *position = (int16_t)labial_clamp(*position + change, LABIAL_POSITION_MAX);
-}
-
 /* Adds what a neighbour adds to the shape of a phoneme; nothing for pairs that the model does not know. `key` is theirs
  * in `pair_keys`. */
 static void add_pair(const labial_model_t *model, unsigned key, labial_shape_t *shape)
 {
     const unsigned knots = model->pair_knots, width = model->channel_count;
     const int8_t *start, *end;
-    unsigned low = 0, high = model->pair_count, k;
-    while (low < high) {
-        const unsigned middle = (low + high) / 2u;
+    unsigned low = 0, high = model->pair_count, middle, k;
+    do {
+        if (low >= high)
+            return;
+        middle = (low + high) / 2u;
         if (model->pair_keys[middle] < key)
             low = middle + 1u;
         else
             high = middle;
-    }
-    if (low >= model->pair_count || model->pair_keys[low] != key)
-        return;
-    start = model->pairs + (size_t)low * knots * width;
+    } while (model->pair_keys[middle] != key);
+    start = model->pairs + (size_t)middle * knots * width;
     end = knots > 1u ? start + width : start;
     for (k = 0; k < width; k++) {
         const uint16_t scale = model->channels[k].pair_scale;
-        shift_position(&shape[k].knots[0], labial_scaled(start[k], scale));
-        shift_position(&shape[k].knots[1], labial_scaled(end[k], scale));
+        int16_t *const knot = shape[k].knots;
+        knot[0] = labial_position(knot[0] + labial_scaled(start[k], scale));
+        knot[1] = labial_position(knot[1] + labial_scaled(end[k], scale));
     }
 }
 
-void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         labial_selection_t *selection)
+void labial_shape_select(const labial_model_t *model, const labial_spoken_t *spoken, labial_selection_t *selection)
 {
-    const labial_phoneme_t *phonemes = model->phonemes;
     if (selection->halves == 0)
-        select_components(model, &phonemes[phoneme], ms, phonemes[previous].viseme_class, phonemes[next].viseme_class,
-                          selection);
-    mix(model, &phonemes[phoneme], selection);
+        select_components(model, spoken, selection);
+    mix(model, &model->phonemes[spoken->phoneme], selection);
     if (selection->halves++ > 0) {
-        add_pair(model, phoneme << 8 | previous, selection->shape);
-        add_pair(model, phoneme << 8 | 128u | next, selection->shape);
+        add_pair(model, spoken->phoneme * 256u + spoken->previous, selection->shape);
+        add_pair(model, spoken->phoneme * 256u + 128u + spoken->next, selection->shape);
     }
 }
 
@@ -189,67 +182,64 @@ static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
     return model->floors + (floor - 1u) * model->channel_count;
 }
 
-/* Brings those of the channels that come to rest in silence `rest` of LABIAL_REST_FRAMES of the way there. */
-static void settle(const labial_model_t *model, unsigned channels, int32_t rest, int16_t target[LABIAL_CHANNELS])
-{
-    const int16_t *pose = floors_of(model, model->silence);
-    const unsigned width = model->channel_count;
-    unsigned k;
-    for (k = 0; k < width; k++, channels >>= 1)
-        if (channels & 1u)
-            target[k] = (int16_t)(target[k] + (pose[k] - target[k]) * rest / LABIAL_REST_FRAMES);
-}
-
-/* Raises those of the channels to a phoneme's floor that lie below it. */
+/* Raises those of the channels to a phoneme's floor that lie below it; or, with `rest`, brings them that share of
+ * LABIAL_REST_FRAMES of the way there. */
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
-                        int16_t target[LABIAL_CHANNELS])
+                        int16_t target[LABIAL_CHANNELS], int32_t rest)
 {
     const unsigned floor = model->phonemes[phoneme].floor, width = model->channel_count;
+    const int16_t *least;
     unsigned k;
     if (floor == 0)
         return;
-    for (k = 0; k < width; k++, channels >>= 1) {
-        const int16_t least = model->floors[(floor - 1u) * width + k];
-        if ((channels & 1u) && target[k] < least)
-            target[k] = least;
-    }
+    least = model->floors + (floor - 1u) * width;
+    for (k = 0; k < width; k++, channels >>= 1)
+        if (channels & 1u) {
+            const int32_t above = least[k] - target[k];
+            if (rest > 0)
+                target[k] = (int16_t)(target[k] + above * rest / LABIAL_REST_FRAMES);
+            else if (above > 0)
+                target[k] = least[k];
+        }
 }
 
-/* How many frames away the nearest phoneme is that makes contact, forwards (`step` is 1) or backwards (-1); FAR where
- * there is none within LABIAL_CONTACT_FRAMES, or silence is nearer. */
-static unsigned distance_to_contact(const labial_model_t *model, const uint8_t *labels, int step)
+/* The label of the nearest phoneme that makes contact, forwards (`step` is 1) or backwards (-1); null where there is
+ * none within LABIAL_CONTACT_FRAMES, or silence is nearer. */
+static const uint8_t *nearest_contact(const labial_model_t *model, const uint8_t *label, int step)
 {
     unsigned distance;
     for (distance = 1; distance <= LABIAL_CONTACT_FRAMES; distance++) {
-        labels += step;
-        if (*labels == model->silence)
+        label += step;
+        if (*label == model->silence)
             break;
-        if (contacts_of(model, *labels))
-            return distance;
+        if (contacts_of(model, *label))
+            return label;
     }
-    return FAR;
+    return NULL;
 }
 
 /* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that both
  * have. */
-static void part(const labial_model_t *model, const uint8_t *labels, int16_t target[LABIAL_CHANNELS])
+static void part(const labial_model_t *model, const uint8_t *label, int16_t target[LABIAL_CHANNELS])
 {
-    const unsigned ahead = distance_to_contact(model, labels, 1);
-    const unsigned behind = ahead < FAR ? distance_to_contact(model, labels, -1) : FAR;
+    const uint8_t *const ahead = nearest_contact(model, label, 1), *behind;
     const int16_t *last, *next;
     unsigned channels, fap;
-    if (ahead == FAR || behind == FAR || ahead + behind > LABIAL_CONTACT_FRAMES + 1u)
+    if (!ahead)
         return;
-    channels = contacts_of(model, labels[-(int)behind]) & contacts_of(model, labels[ahead]);
-    last = floors_of(model, labels[-(int)behind]);
-    next = floors_of(model, labels[ahead]);
+    behind = nearest_contact(model, label, -1);
+    if (!behind || ahead - behind > LABIAL_CONTACT_FRAMES + 1)
+        return;
+    channels = contacts_of(model, *behind) & contacts_of(model, *ahead);
+    last = floors_of(model, *behind);
+    next = floors_of(model, *ahead);
     for (fap = 0; fap < LABIAL_CHANNELS; fap++) {
         const unsigned k = model->sources[fap];
         if (parted[fap] && (channels >> k & 1u)) { /* FAP 17, which may have no channel, does not part */
             const int32_t floor = last[k] < next[k] ? last[k] : next[k];
-            const int32_t most = labial_clamp(floor - parted[fap] * 16, LABIAL_POSITION_MAX);
+            const int16_t most = labial_position(floor - parted[fap] * 16);
             if (floor > LABIAL_NO_FLOOR && target[k] > most)
-                target[k] = (int16_t)most;
+                target[k] = most;
         }
     }
 }
@@ -259,22 +249,25 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
 {
     const uint8_t *labels = taken->labels;
     const unsigned own = contacts_of(model, labels[0]);
-    const int is_open = taken->is_open || labels[0] == model->silence;
-    unsigned before = 0, after = 0; /* those of a phoneme that follows, and that went before */
-    if (labels[1] != labels[0] && labels[1] != model->silence && !(labels[1] == labels[2] && labels[2] == labels[3]))
-        before = contacts_of(model, labels[1]);
-    if (labels[-1] != labels[0] && labels[-1] != model->silence && labels[-1] != labels[-2])
-        after = contacts_of(model, labels[-1]);
-    apply_floor(model, labels[0], is_open ? ~own : ~0u, target);
-    if (taken->rest && own)
-        settle(model, own, taken->rest, target);
-    if (before)
-        apply_floor(model, labels[1], before, target);
-    if (after)
-        apply_floor(model, labels[-1], after, target);
-    if (!(own | before | after) && labels[0] != model->silence)
+    const unsigned apart = taken->is_open || labels[0] == model->silence ? own : 0u; /* not in this frame */
+    unsigned borrowed = 0;
+    int step;
+    apply_floor(model, labels[0], ~apart, target, 0);
+    if (taken->rest)
+        apply_floor(model, labels[0], own, target, taken->rest);
+    for (step = -1; step < 2; step += 2) { /* a short contact has the frame before it, and one frame's that after it */
+        const unsigned beside = labels[step];
+        if (beside != labels[0] && beside != model->silence &&
+            (beside != labels[2 * step] || (step > 0 && beside != labels[3]))) {
+            const unsigned contacts = contacts_of(model, beside);
+            if (contacts)
+                apply_floor(model, beside, contacts, target, 0);
+            borrowed |= contacts;
+        }
+    }
+    if (!(own | borrowed) && labels[0] != model->silence)
         part(model, labels, target);
-    return (is_open ? 0u : own) | before | after;
+    return (own & ~apart) | borrowed;
 }
 
 /* Where the kernels' taps of a frame begin. */
@@ -287,12 +280,11 @@ static void find_taps(const labial_model_t *model, const uint8_t *labels, const 
         words[tap] = model->kernels + ((size_t)labels[lag] * taps + tap) * size;
 }
 
-/* What the taps add up to on the four channels of word `group`, in steps. Two channels of a word are summed at once; with
- * them the sum of the words, modulo 2^32, tells the other two. */
-static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group, int16_t sums[4])
+/* What the words of the taps add up to on the four channels of word `group`. Two channels of a word are summed at once;
+ * with them the sum of the words, modulo 2^32, tells the other two. */
+static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group, uint16_t sums[4])
 {
     const uint32_t halves = 0x00ff00ffu;
-    const int32_t bias = (int32_t)(taps * 128u);
     const uint32_t *const *const end = words + taps;
     uint32_t even = 0, odd = 0;
     for (; words < end; words++) {
@@ -301,19 +293,19 @@ static void add_taps(const uint32_t *const *words, unsigned taps, unsigned group
         odd += word >> 8 & halves;
     }
     even -= odd << 8;
-    sums[0] = (int16_t)((int32_t)(even & 0xffffu) - bias);
-    sums[1] = (int16_t)((int32_t)(odd & 0xffffu) - bias);
-    sums[2] = (int16_t)((int32_t)(even >> 16) - bias);
-    sums[3] = (int16_t)((int32_t)(odd >> 16) - bias);
+    sums[0] = (uint16_t)even;
+    sums[1] = (uint16_t)odd;
+    sums[2] = (uint16_t)(even >> 16);
+    sums[3] = (uint16_t)(odd >> 16);
 }
 
-uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
+unsigned labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
                              int16_t target[LABIAL_CHANNELS])
 {
     const uint32_t *words[LABIAL_KERNEL_TAPS_MAX]; /* of each tap's phoneme */
-    int16_t sums[4u * LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)];
+    uint16_t sums[4u * LABIAL_KERNEL_WORDS(LABIAL_CHANNELS)];
     const labial_channel_t *const channels = model->channels;
-    const int32_t share = taken->share;
+    const int32_t share = taken->share, bias = model->kernel_taps * 128; /* of each sum */
     const unsigned width = model->channel_count;
     unsigned group, k;
     find_taps(model, taken->labels, words);
@@ -324,9 +316,9 @@ uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *
     for (k = 0; k < width; k++) {
         const int32_t start = shape[k].knots[0];
         const int32_t position = start + (((shape[k].knots[1] - start) * share + 8192) >> 14) +
-                                 labial_scaled(sums[k], channels[k].kernel_scale);
-        target[k] = (int16_t)labial_clamp(position, LABIAL_POSITION_MAX);
+                                 labial_scaled((int16_t)(sums[k] - bias), channels[k].kernel_scale);
+        target[k] = labial_position(position);
     }
     /*@ merge width; */
-    return (uint16_t)(model->floor_count ? touch(model, taken, target) : 0u);
+    return model->floor_count ? touch(model, taken, target) : 0u;
 }

@@ -55,8 +55,7 @@ static void select_halves(labial_t *stream, unsigned halves)
     if (stream->next.halves == 2u || !labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
         return;
     for (; halves > 0 && stream->next.halves < 2u; halves--)
-        labial_shape_select(stream->models[spoken.slot], spoken.phoneme, spoken.ms, spoken.previous, spoken.next,
-                            &stream->next);
+        labial_shape_select(stream->models[spoken.slot], &spoken, &stream->next);
 }
 
 /* Does its share of selecting the shape of the phoneme that begins next. The last of a stride's ticks has the fewest

@@ -34,11 +34,12 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
 void oracle_shape(const labial_model_t *model, unsigned phoneme, unsigned ms, unsigned previous, unsigned next,
                   labial_shape_t *shape)
 {
+    const labial_spoken_t spoken = { 0, (uint8_t)phoneme, (uint8_t)previous, (uint8_t)next, (uint16_t)ms };
     labial_selection_t selection;
     memset(&selection, 0x5a, sizeof selection);
     selection.shape = shape;
     for (selection.halves = 0; selection.halves < 2;)
-        labial_shape_select(model, phoneme, (uint16_t)ms, previous, next, &selection);
+        labial_shape_select(model, &spoken, &selection);
 }
 
 /* What the frame's target is without floors. */

@@ -77,7 +77,7 @@ static size_t aim(void)
         if (labial_units_take(&units, models, 1, &taken) != LABIAL_OK)
             return n;
         assert_true(n < MANY);
-        contacts[n] = labial_shape_target(models[taken.slot], shape, &taken, targets[n]);
+        contacts[n] = (uint16_t)labial_shape_target(models[taken.slot], shape, &taken, targets[n]);
         n++;
     }
 }

@@ -24,6 +24,7 @@
 #define labial_z_cost narrow_z_cost
 #define labial_ease narrow_ease
 #define labial_clamp narrow_clamp
+#define labial_position narrow_position
 #define labial_scaled narrow_scaled
 #define labial_quotient narrow_quotient
 #include "fixed.h"
@@ -38,6 +39,7 @@
 #undef labial_z_cost
 #undef labial_ease
 #undef labial_clamp
+#undef labial_position
 #undef labial_scaled
 #undef labial_quotient
 
@@ -178,7 +180,8 @@ TEST(clamping)
     assert_int_equal(labial_clamp(-11, 10), -10);
     assert_int_equal(labial_clamp(10, 10), 10);
     assert_int_equal(labial_clamp(-10, 10), -10);
-    assert_int_equal(labial_clamp(INT32_MIN, 16383), -16383);
+    assert_int_equal(labial_position(INT32_MIN), -16383);
+    assert_int_equal(labial_position(16384), 16383);
 }
 
 /* Would catch a bit of the quotient that is skipped or taken twice, and a divisor that is shifted out. */

@@ -94,6 +94,7 @@ int prove_fixed(void)
     labial_z(Frama_C_unsigned_int_interval(0, 65535), any_uint16, Frama_C_unsigned_int_interval(0, 65535));
     labial_z_cost(Frama_C_unsigned_int_interval(0, 65535));
     labial_ease(Frama_C_unsigned_int_interval(0, 65535), steps);
+    labial_position(any_int32);
     return labial_clamp(any_int32, limit);
 }
 

@@ -46,8 +46,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     return LABIAL_OK;
 }
 
-void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t ms, unsigned previous, unsigned next,
-                         labial_selection_t *selection)
+void labial_shape_select(const labial_model_t *model, const labial_spoken_t *spoken, labial_selection_t *selection)
 {
     labial_shape_t *shape = selection->shape;
     unsigned k;
@@ -57,16 +56,17 @@ void labial_shape_select(const labial_model_t *model, unsigned phoneme, uint16_t
         shape[k].knots[0] = any_position();
         shape[k].knots[1] = any_position();
     }
-    shape[0].knots[0] = model->phonemes[phoneme].floor + ms + previous + next > 0 ? any_position() : 0;
+    shape[0].knots[0] =
+        model->phonemes[spoken->phoneme].floor + spoken->ms + spoken->previous + spoken->next > 0 ? any_position() : 0;
 }
 
-uint16_t labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
+unsigned labial_shape_target(const labial_model_t *model, const labial_shape_t *shape, const labial_taken_t *taken,
                              int16_t target[LABIAL_CHANNELS])
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++)
         target[k] = shape[k].knots[0] + shape[k].knots[1] + taken->labels[0] + taken->share > 0 ? any_position() : 0;
-    return model->floor_count ? any_uint16 : (uint16_t)0;
+    return model->floor_count ? any_uint16 : 0u;
 }
 
 static void advance(int stride)

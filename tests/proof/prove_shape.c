@@ -10,18 +10,20 @@ static labial_model_t model;
 
 static void select_among(int count, int knots)
 {
-    const unsigned phoneme = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
-    const unsigned previous = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
-    const unsigned next = (unsigned)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
-    const uint16_t ms = any_uint16;
+    labial_spoken_t spoken;
     labial_selection_t selection = { 0 }; /* as labial_init() makes it */
     labial_shape_t shape[LABIAL_CHANNELS];
     FILL(shape); /* the workspace */
     selection.shape = shape;
+    spoken.slot = any_uint8;
+    spoken.phoneme = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.previous = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.next = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.ms = any_uint16;
     any_phonemes(count);
     model.pair_knots = (uint8_t)knots;
-    labial_shape_select(&model, phoneme, ms, previous, next, &selection);
-    labial_shape_select(&model, phoneme, ms, previous, next, &selection);
+    labial_shape_select(&model, &spoken, &selection);
+    labial_shape_select(&model, &spoken, &selection);
 }
 
 /* Any frame. */
