@@ -10,7 +10,7 @@
 int16_t labial_protrusion(const labial_protrusion_t *table, int32_t corners)
 {
     const int32_t above = corners - 2 * table->low;
-    const uint32_t place = above < 0 ? 0u : above > 65535 ? 65535u : (uint32_t)above;
+    const uint32_t place = above > 65535 ? 65535u : above < 0 ? 0u : (uint32_t)above;
     const uint32_t at = place * table->gain >> 12; /* of the values, Q8 */
     const int16_t *values;
     if (at >= LAST * 256u)

@@ -31,15 +31,6 @@ uint32_t labial_workspace_size(const labial_model_t *model)
     return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
 }
 
-/* How many channels a workspace has room for, which is enough for those of `model`. */
-static unsigned width_of(const labial_model_t *model, size_t size)
-{
-    unsigned width = model->channel_count;
-    while (width < LABIAL_CHANNELS && LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, width + 1u) <= size)
-        width++;
-    return width;
-}
-
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int status(const labial_t *stream)
 {
@@ -48,14 +39,16 @@ static int status(const labial_t *stream)
 
 /* ---- One frame in ------------------------------------------------------------------------------------------------ */
 
-/* Does up to `halves` of selecting the shape of the phoneme that begins next, if all that it depends on is known. */
-static void select_halves(labial_t *stream, unsigned halves)
+/* Does half of selecting the shape of the phoneme that begins next, or with `all` what is left of that, if everything
+ * that it depends on is known. */
+static void select_more(labial_t *stream, int all)
 {
     labial_spoken_t spoken;
     if (stream->next.halves == 2u || !labial_units_next(&stream->units, stream->models, stream->ended, &spoken))
         return;
-    for (; halves > 0 && stream->next.halves < 2u; halves--)
+    do
         labial_shape_select(stream->models[spoken.slot], &spoken, &stream->next);
+    while (stream->next.halves < 2u && all);
 }
 
 /* Does its share of selecting the shape of the phoneme that begins next. The last of a stride's ticks has the fewest
@@ -66,15 +59,16 @@ static void select_ahead(labial_t *stream)
     const unsigned stride = stream->channels.stride, wait = stride - 1u - stream->channels.phase;
     const uint32_t left = labial_units_left(&stream->units, stream->models);
     if (wait == 0)
-        select_halves(stream, left < stride ? 2u : 1u);
+        select_more(stream, left < stride);
     else if (left < wait)
-        select_halves(stream, left == 0 ? 2u : 1u);
+        select_more(stream, left == 0);
 }
 
-/* Stores a frame that was taken, and its target. */
-static void store(labial_t *stream, const labial_taken_t *taken)
+/* Stores a frame that was taken, and its target; returns it. */
+static const labial_frame_t *store(labial_t *stream, const labial_taken_t *taken)
 {
     labial_frame_t *frame = labial_channels_enter(&stream->channels, stream->models, taken->slot);
+    labial_articulation_step(&stream->articulation);
     if (taken->is_first) { /* its place is free for the one after it */
         labial_shape_t *const before = stream->shape;
         stream->shape = stream->next.shape;
@@ -83,20 +77,16 @@ static void store(labial_t *stream, const labial_taken_t *taken)
     }
     frame->contacts = labial_shape_target(stream->models[taken->slot], stream->shape, taken, frame->target);
     frame->marks = taken->marks;
-    labial_articulation_step(&stream->articulation);
-    if (taken->marks & LABIAL_BEGINS)
-        stream->begins[0] |= 1u;
-    if (frame->contacts)
-        stream->touches[0] |= 1u;
+    return frame;
 }
 
-/* Adds a tick to the age of every frame: bit i of `frames` is that of age i. */
-static void grow_older(uint32_t frames[LABIAL_DELAY_WORDS_])
+/* Adds a tick to the age of every frame: bit i of `frames` is that of age i, and `newest` that of age 0. */
+static void grow_older(uint32_t frames[LABIAL_DELAY_WORDS_], uint32_t newest)
 {
     unsigned i;
     for (i = LABIAL_DELAY_WORDS_; --i > 0;)
         frames[i] = frames[i] << 1 | frames[i - 1u] >> 31;
-    frames[0] <<= 1;
+    frames[0] = frames[0] << 1 | newest;
 }
 
 /* Whether the frame of an age is among them. */
@@ -118,15 +108,19 @@ static int is_among(const uint32_t frames[LABIAL_DELAY_WORDS_], unsigned age)
 static int take_frame(labial_t *stream)
 {
     labial_taken_t taken;
+    uint32_t begins = 0, touches = 0;
     const int result = labial_units_take(&stream->units, stream->models, stream->ended, &taken);
-    if (result == LABIAL_STARVED || (result == LABIAL_DONE && stream->pending == 0))
-        return result;
-    grow_older(stream->begins);
-    grow_older(stream->touches);
-    if (result == LABIAL_OK)
-        store(stream, &taken);
-    else
+    if (result == LABIAL_OK) {
+        const labial_frame_t *const frame = store(stream, &taken);
+        begins = (frame->marks & LABIAL_BEGINS) != 0;
+        touches = frame->contacts != 0;
+    } else if (result == LABIAL_DONE && stream->pending > 0) {
         labial_channels_run_out(&stream->channels);
+    } else {
+        return result;
+    }
+    grow_older(stream->begins, begins);
+    grow_older(stream->touches, touches);
     return LABIAL_OK;
 }
 
@@ -138,7 +132,7 @@ static void call_back(labial_t *stream, unsigned counts)
     const uint32_t frame = stream->frame;
     int16_t faps[LABIAL_CHANNELS];
     labial_fade_faps(&stream->fade, faps);
-    stream->frame += counts;
+    stream->frame = frame + counts;
     LABIAL_TICK_ENDS(stream);
     stream->callback(stream->user, frame, faps); /* last: it may call anything */
 }
@@ -203,6 +197,12 @@ static int hold_or_rest(labial_t *stream)
 
 /* ---- The calls --------------------------------------------------------------------------------------------------- */
 
+/* Whether frames to be delivered, or phonemes in the queue, are of the model in `slot`. */
+static int is_used(const labial_t *stream, unsigned slot)
+{
+    return labial_channels_uses(&stream->channels, slot) || labial_units_uses(&stream->units, slot);
+}
+
 static void reset_input(labial_t *stream)
 {
     labial_units_reset(&stream->units);
@@ -216,6 +216,7 @@ static void reset_input(labial_t *stream)
 int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, size_t size, labial_frame_fn callback,
                 void *user)
 {
+    unsigned width; /* channels that the workspace has room for */
     if (!stream)
         return LABIAL_ERROR_NULL;
     stream->magic = 0;
@@ -223,15 +224,18 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
         return LABIAL_ERROR_NULL;
     if (model->format != LABIAL_MODEL_FORMAT)
         return LABIAL_ERROR_VERSION;
-    if (((uintptr_t)workspace & 3u) || size < labial_workspace_size(model))
+    if ((uintptr_t)workspace & 3u)
         return LABIAL_ERROR_WORKSPACE;
+    for (width = LABIAL_CHANNELS; LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, width) > size; width--)
+        if (width == model->channel_count)
+            return LABIAL_ERROR_WORKSPACE;
     memset(stream, 0, sizeof *stream);
     stream->models[0] = model;
     stream->callback = callback;
     stream->user = user;
     stream->articulation.wanted = 100;
     stream->resting = 1;
-    stream->shape = labial_channels_init(&stream->channels, model->search_stride, width_of(model, size), workspace);
+    stream->shape = labial_channels_init(&stream->channels, model->search_stride, width, workspace);
     stream->next.shape = stream->shape + stream->channels.width;
     stream->magic = LABIAL_MAGIC_;
     reset_input(stream);
@@ -260,8 +264,8 @@ int labial_use(labial_t *stream, const labial_model_t *model)
             chosen = slot;
             break;
         }
-        if (!labial_channels_uses(&stream->channels, slot) && !labial_units_uses(&stream->units, slot))
-            chosen = slot; /* neither frames to be delivered nor phonemes in the queue are of its model */
+        if (!is_used(stream, slot))
+            chosen = slot;
     }
     if (chosen == LABIAL_MODELS)
         return LABIAL_ERROR_MODELS;
@@ -274,8 +278,7 @@ int labial_uses(const labial_t *stream, const labial_model_t *model)
 {
     unsigned slot;
     for (slot = 0; status(stream) == LABIAL_OK && slot < LABIAL_MODELS; slot++)
-        if (stream->models[slot] == model && (slot == stream->slot || labial_channels_uses(&stream->channels, slot) ||
-                                              labial_units_uses(&stream->units, slot)))
+        if (stream->models[slot] == model && (slot == stream->slot || is_used(stream, slot)))
             return 1;
     return 0;
 }
@@ -315,26 +318,26 @@ int labial_end(labial_t *stream)
 
 int labial_tick(labial_t *stream)
 {
-    int is_late, is_due = 0, has_pose, result = status(stream);
+    int is_late, is_due = 0, has_pose = 0, result = status(stream);
     if (result != LABIAL_OK)
         return result;
     is_late = stream->next.halves < 2u && labial_units_left(&stream->units, stream->models) == 0;
     if (is_late) /* it was not known before what it depends on */
-        select_halves(stream, 2);
+        select_more(stream, 1);
     result = take_frame(stream);
     if (result == LABIAL_OK) {
         labial_channels_step(&stream->channels, stream->models, labial_articulation_gain(&stream->articulation));
         if (!is_late)
             select_ahead(stream);
-        is_due = deliver(stream);
+        has_pose = is_due = deliver(stream);
     }
-    has_pose = is_due;
     if (result == LABIAL_DONE) {
         has_pose = is_due = rest(stream);
-        result = is_due ? LABIAL_OK : LABIAL_DONE;
+        if (is_due)
+            result = LABIAL_OK;
     } else if (!is_due) {
-        has_pose = hold_or_rest(stream);
         result = stream->begun ? LABIAL_STARVED : LABIAL_WAITING;
+        has_pose = hold_or_rest(stream);
     }
     if (has_pose)
         call_back(stream, (unsigned)is_due);
@@ -386,17 +389,23 @@ int labial_articulation(labial_t *stream, unsigned percent)
     return result;
 }
 
+/* Frames as milliseconds, rounded. */
+static uint32_t milliseconds_of(uint32_t frames, uint32_t rate)
+{
+    const uint32_t seconds = labial_quotient(frames, rate), rest = frames - seconds * rate;
+    return seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
+}
+
 labial_latency_t labial_latency(const labial_t *stream)
 {
     labial_latency_t latency = { 0, 0, 0, 0, 0 };
     if (status(stream) == LABIAL_OK) {
         const uint32_t rate = stream->models[stream->slot]->frames_per_second;
-        const uint32_t seconds = labial_quotient(stream->pending, rate), rest = stream->pending - seconds * rate;
-        latency.milliseconds = seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
         latency.frames = stream->pending;
+        latency.milliseconds = milliseconds_of(latency.frames, rate);
         latency.phonemes = stream->units.count;
         latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
-        latency.delay_milliseconds = labial_quotient(latency.delay * 1000u + rate / 2u, rate);
+        latency.delay_milliseconds = milliseconds_of(latency.delay, rate);
     }
     return latency;
 }

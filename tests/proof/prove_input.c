@@ -86,7 +86,7 @@ static void advance(int stride)
         stream.articulation.wanted = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         stream.articulation.present = (uint8_t)Frama_C_interval(0, LABIAL_ARTICULATION_MAX);
         if (any_int)
-            select_halves(&stream, (unsigned)Frama_C_interval(1, 2));
+            select_more(&stream, Frama_C_interval(0, 1));
         stream.channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
         select_ahead(&stream);
         take_frame(&stream);
