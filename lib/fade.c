@@ -32,28 +32,37 @@ void labial_fade_close(labial_fade_t *fade, unsigned closing)
     fade->closing = (uint16_t)closing;
 }
 
+/* How much of a way of so many steps has been gone, Q14. */
+static int32_t share_at(unsigned step, unsigned steps)
+{
+    return step < steps ? labial_ease(step, steps) : (int32_t)1 << 14;
+}
+
+/* Where a channel of the motion is; null is the neutral face. */
+static int16_t aim_of(const int16_t *motion, unsigned channel)
+{
+    return motion ? motion[channel] : (int16_t)0;
+}
+
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
-    static const int16_t neutral[LABIAL_CHANNELS] = { 0 };
     const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
     int32_t share, closed;
     unsigned k;
-    if (!motion)
-        motion = neutral;
     if (step == 0 || step >= fade->length) { /* not on a way, or at its end */
         for (k = 0; k < LABIAL_CHANNELS; k++) {
             fade->earlier[k] = fade->pose[k];
-            fade->pose[k] = motion[k];
+            fade->pose[k] = aim_of(motion, k);
         }
         fade->step = 0;
         return;
     }
-    share = labial_ease(step, fade->length);
-    closed = step < fade->closing ? labial_ease(step, fade->closing) : (int32_t)1 << 14;
+    share = share_at(step, fade->length);
+    closed = share_at(step, fade->closing);
     for (k = 0; k < LABIAL_CHANNELS; k++) {
         const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
         const int32_t own = LABIAL_FADE_CLOSING >> k & 1u ? closed : share;
-        fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * own + 8192) >> 14), INT16_MAX);
+        fade->pose[k] = (int16_t)labial_clamp(from + (((aim_of(motion, k) - from) * own + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);
 }
