@@ -28,8 +28,8 @@ labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned strid
 void labial_channels_reset(labial_channels_t *channels)
 {
     /* Zeros, or a first backward pass would go on into frames that were forgotten. */
-    memset(channels->progress, 0, LABIAL_WORKSPACE_SIZE((uint32_t)channels->stride, channels->width));
-    channels->entered = channels->beyond = channels->stepping = channels->wide = 0;
+    memset(channels->progress, 0, (size_t)((char *)channels->motion - (char *)channels->progress));
+    channels->entered = channels->beyond = channels->stepping = 0;
     channels->phase = (uint8_t)(channels->stride - 1u);
 }
 
@@ -55,22 +55,18 @@ static void resume(labial_progress_t *progress)
     labial_viterbi_span(&progress->search, 255);
 }
 
-/* How many channels step, once the newest frame has `count`: those of the widest model in hand, which is looked for
- * only when the last frame that was as wide has gone. */
+/* How many channels step, once the newest frame has `count`: those of the widest model in hand. Where it has fewer than
+ * step, one that has as many is in hand, or as many frames as can be have been taken since. */
 static void widen(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS], unsigned count)
 {
+    const unsigned delay = LABIAL_DELAY((unsigned)channels->stride);
     unsigned most = count, age;
-    if (count < channels->stepping) {
-        if (--channels->wide > 0)
-            return;
-        for (age = LABIAL_DELAY(channels->stride); age > 0; age--) /* as many frames have been taken at least */
-            if (models[channels->slots[age]]->channel_count > most)
-                most = models[channels->slots[age]]->channel_count;
-    }
+    for (age = 1; most < channels->stepping && age <= delay; age++)
+        if (models[channels->slots[age]]->channel_count > most)
+            most = models[channels->slots[age]]->channel_count;
     for (age = channels->stepping; age < most && channels->stepping > 0; age++)
         resume(&channels->progress[age]);
     channels->stepping = (uint8_t)most;
-    channels->wide = (uint8_t)(LABIAL_DELAY(channels->stride) + 1);
 }
 
 labial_frame_t *labial_channels_enter(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
@@ -208,9 +204,9 @@ static void step_channel(const labial_channels_t *channels, step_t *step, labial
     if (LABIAL_LAG > 0)
         solve(step, row, newest, beyond);
     age = newest - LABIAL_LAG < stride ? newest - LABIAL_LAG : stride;
-    for (own = step->end - age + 1; own <= step->end; own++) { /* as if all frames beyond were equal to the last */
-        own->q = own[-1].q;
-        own->rho = own->kappa = 0;
+    for (own = step->end - age; own < step->end; own++) { /* as if all frames beyond were equal to the last */
+        own[1].q = own->q;
+        own[1].rho = own[1].kappa = 0;
     }
     /* The latest row waits for the next one, unless it is its solution's last. */
     age = beyond > LABIAL_LAG || (step->latest[-LABIAL_LAG].marks & LABIAL_ENDS) ? 0 : 1;

@@ -132,10 +132,9 @@ typedef struct {
     uint8_t stride;   /* frames that share a state */
     uint8_t phase;    /* channels phase, phase + stride, ... step next */
     uint8_t entered;  /* accepted frames, 255 for more */
-    uint8_t beyond;   /* ticks since the last frame was accepted */
     uint8_t width;    /* channels that the workspace holds */
+    uint8_t beyond;   /* ticks since the last frame was accepted */
     uint8_t stepping; /* channels of the frames in hand: the most that one of their models has */
-    uint8_t wide;     /* ticks after which it may be fewer */
     uint8_t slots[LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) + 1]; /* i: model of the frame that was accepted i ticks ago */
     labial_progress_t *progress;                               /* width */
     labial_frame_t *frames; /* the latest stride + LABIAL_LAG, the newest at the end */

@@ -93,7 +93,6 @@ static void pass(int stride)
     channels.entered = any_uint8;
     channels.beyond = (uint8_t)Frama_C_interval(0, LABIAL_DELAY(stride) - 1);
     channels.stepping = (uint8_t)Frama_C_interval(0, LABIAL_CHANNELS);
-    channels.wide = any_uint8;
     for (i = 0; i <= LABIAL_DELAY(stride); i++)
         channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
     labial_channels_uses(&channels, any_unsigned);
