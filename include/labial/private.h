@@ -65,13 +65,13 @@ typedef struct {
 
 /* State of the solution of one channel (trajectory.c): the recursion, and the row that the next one completes. */
 typedef struct {
+    uint8_t shifts[2]; /* headroom of the last row's two divisors, where cores do not count leading zeros */
+    uint16_t hold, delta;
     int32_t row, bent; /* Q16 */
     int32_t k1, k2;    /* Q16 */
     int32_t q1, q2;    /* Q12 FAP */
     int32_t position;  /* Q12 FAP */
     int32_t pull, next_pull;
-    uint16_t hold, delta;
-    uint8_t shifts[2]; /* headroom of the last row's two divisors, where cores do not count leading zeros */
 } labial_solver_t;
 
 /* A frame's numbers for the backward pass (trajectory.c). */
