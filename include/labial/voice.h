@@ -75,6 +75,9 @@ extern "C" {
 /* Bytes of an item's text that are kept; the rest is passed over. */
 #define LABIAL_VOICE_TEXT 255u
 
+/* Characters of the longest word that characters make; what follows is another word. */
+#define LABIAL_VOICE_LETTERS 60u
+
 /* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
 #define LABIAL_VOICE_NO_END UINT64_MAX
 
@@ -102,7 +105,9 @@ typedef enum {
     LABIAL_VOICE_AZURE,     /* visemes by their names: Azure's, "0" to "21"; each lasts until the next */
     LABIAL_VOICE_POLLY,     /* and Amazon Polly's, such as "p" or "sil" */
     LABIAL_VOICE_WORDS,     /* as they are written, with their punctuation */
-    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over */
+    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over. Words end at blanks; those of scripts
+                             * without blanks at their punctuation, where a word of Japanese or a syllable of Thai
+                             * probably begins, and after four kana. */
 } labial_voice_kind_t;
 
 /* From when on the times of a message count. */
@@ -319,8 +324,9 @@ struct labial_voice_plan {
     uint8_t size;       /* and its bytes */
     uint32_t time;      /* up to which words have phonemes */
     uint32_t begin, until;
-    uint32_t ends[LABIAL_WORDS_CHARACTERS];
-    char letters[LABIAL_VOICE_TEXT + 1u];
+    uint32_t last; /* of them: its number */
+    uint32_t ends[LABIAL_VOICE_LETTERS];
+    char letters[4u * LABIAL_VOICE_LETTERS];
     labial_words_t words;
 };
 

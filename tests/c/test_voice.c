@@ -265,7 +265,7 @@ TEST_AFTER(begin, characters_are_words_between_blanks)
     plan_from = 640;
     assert_string_equal(known(), strstr(first, "650"));
     plan_from = 0;
-    tell_one("\xe2\x80\x94", 740, 760); /* no blank */
+    tell_one("\xe2\x80\x93", 740, 760); /* no blank */
     tell_one("\n", 760, 770);
     tell_one("\xc3\xa9", 770, 775);
     tell_one("\x0e", 775, 777);                     /* no blank */
@@ -316,6 +316,75 @@ TEST_AFTER(begin, characters_that_overlap_and_long_words)
     assert_int_equal(tell(), LABIAL_OK);
     known();
     assert_non_null(strstr(said, "-15000 "));
+}
+
+/* The characters of a text of UTF-8, 50 ms each. */
+static void letters(const char *text, int64_t start)
+{
+    static char found[PLACES][5];
+    for (unsigned i = 0; *text; i++, text += labial_voice_bytes(text, 5)) {
+        memset(found[i], 0, sizeof found[i]);
+        memcpy(found[i], text, labial_voice_bytes(text, 5));
+        item(found[i], start + 50 * i, start + 50 * (i + 1));
+    }
+}
+
+static char noted[2000];
+
+static const labial_words_own_t *note(void *user, const char *text, size_t size)
+{
+    char *const words = (char *)user;
+    memcpy(words + strlen(words), text, size); /* behind it are zeros */
+    words[strlen(words)] = '|';
+    return NULL;
+}
+
+/* The words that the characters of a text are. */
+static const char *words_in(const char *text)
+{
+    begin_with(PLACES);
+    memset(noted, 0, sizeof noted);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    letters(text, 0);
+    assert_int_equal(labial_voice_pronounce(&voice, note, noted), LABIAL_OK);
+    assert_int_equal(tell(), LABIAL_OK);
+    known();
+    return noted;
+}
+
+TEST(words_of_scripts_without_blanks)
+{
+    char text[301];
+    assert_string_equal(words_in("妈妈爸爸，朋友们……好——吗？「是」。"), "妈妈爸爸|朋友们|好|吗|是|");
+    assert_string_equal(words_in("你好,世界.再见!好吗?是:的;A,B.豈!"), "你好|世界|再见|好吗|是|的|A,B.豈|");
+    assert_string_equal(words_in(",你 .好𠀀!⼀.⺀?々,㐀;"), ",你|.好𠀀|⼀|⺀|々|㐀|");
+    assert_string_equal(words_in("今日は新聞を読みました。"), "今日は|新聞を|読みまし|た|");
+    assert_string_equal(words_in("Tシャツとバスに乗り、コンピューターをつかって、しゃっきんばなしだ"),
+                        "Tシャツ|と|バスに|乗り|コンピュー|ターをつ|かって|しゃっきん|ばなしだ|");
+    assert_string_equal(words_in("はA あいうえB"), "はA|あいうえB|");
+    assert_string_equal(words_in("ぱはぱんをたべます"), "ぱはぱん|をたべます|");
+    assert_string_equal(words_in("すごーいね・ァかヽかか゛か"), "すごーい|ね|ァかヽか|か゛か|");
+    assert_string_equal(words_in("แม่และพ่อไปซื้อปลา, ດີເດັກ!ก"), "แม่|และพ่อ|ไปซื้อปลา|ດີ|ເດັກ|ก|");
+    assert_string_equal(words_in("वह घर,गया 엄마와!아빠"), "वह|घर,गया|엄마와!아빠|");
+    assert_string_equal(words_in("[妈妈]爸,[b"), "爸|[b|");
+    memset(text, 'o', 300);
+    text[300] = '\0';
+    words_in(text);
+    assert_int_equal(strlen(noted), 305);
+    assert_int_equal(strcspn(noted, "|"), LABIAL_VOICE_LETTERS);
+}
+
+TEST_AFTER(begin, long_texts_without_blanks_are_forgotten)
+{
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    for (unsigned i = 0; i < 40; i++) {
+        letters("妈妈爸爸跑步，朋友。", 500 * (int)i);
+        assert_int_equal(tell(), LABIAL_OK);
+        play(500 * (uint64_t)i);
+    }
+    assert_in_range(voice.utterances[0].places, 50, 150);
+    plan_from = 19000;
+    assert_true(atol(known()) >= plan_from);
 }
 
 TEST_AFTER(begin, a_tag_is_looked_for_in_a_hundred_characters)

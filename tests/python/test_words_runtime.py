@@ -130,6 +130,54 @@ def test_characters_become_words() -> None:
     assert total(long) == 900
 
 
+#: Texts of scripts without blanks, and their words: where they end, and where one of Japanese or a syllable of Thai
+#: probably begins. tests/c/test_voice.c and tests/npm/words.test.mjs have some of them as well.
+UNSPACED = [
+    ("妈妈爸爸，朋友们……好——吗？「是」。", "妈妈爸爸|朋友们|好|吗|是"),
+    ("你好,世界.再见!好吗?是:的;A,B", "你好|世界|再见|好吗|是|的|A,B"),
+    ("今日は新聞を読みました。", "今日は|新聞を|読みまし|た"),
+    ("コンピューターをつかってしゃっきんです", "コンピュー|ターをつ|かってしゃっ|きんです"),
+    ("すごーいね・ァかヽかか゛か", "すごーい|ね|ァかヽか|か゛か"),
+    ("แม่และพ่อไปซื้อปลา, ດີເດັກ!ก", "แม่|และพ่อ|ไปซื้อปลา|ດີ|ເດັກ|ก"),
+    ("वह घर,गया 엄마와!아빠", "वह|घर,गया|엄마와!아빠"), ("o" * 130, f"{'o' * 60}|{'o' * 60}|{'o' * 10}"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text, words", UNSPACED)
+def test_words_of_scripts_without_blanks(text: str, words: str) -> None:
+    """Each with its own characters' times; a text without times has the same words."""
+    found = words_of_characters(list(text), list(range(len(text))), list(range(1, len(text) + 1)))
+    assert "|".join(word.text for word in found) == words == "|".join(filter(None, spoken.words_of(text)))
+    for word in found:
+        assert text[word.start : word.end] == word.text and word.ends == tuple(range(word.start + 1, word.end + 1))
+
+
+def test_each_character_of_chinese_is_a_word() -> None:
+    """For a voice as well, which gets blanks between them."""
+    times = ([0, 100, 300, 400, 500], [100, 300, 400, 500, 600])
+    for language in ("cmn", "zh-TW", "yue", "zh-HK"):
+        found = words_of_characters(["我", "用PY", "写", "，", "吧"], *times, language=language)
+        assert [(word.text, word.start, word.end) for word in found] == [
+            ("我", 0, 100), ("用", 100, 166), ("PY", 166, 300), ("写", 300, 400), ("吧", 500, 600)]  # fmt: skip
+    assert [word.text for word in words_of_characters(["我", "用PY", "写", "，", "吧"], *times, language="ja")] == [
+        "我用PY写", "吧"]  # fmt: skip
+    assert spoken.characters_apart([("我们", 1.0, 2.0), ("P", 2.0, None)]) == [
+        (" ", 1.0, 1.0), ("我", 1.0, 1.5), (" ", 1.5, 1.5), ("们", 1.5, 2.0), (" ", 2.0, 2.0),
+        ("P", 2.0, 2.0)]  # fmt: skip
+
+
+@needs_espeak
+def test_long_texts_are_not_cut(caplog: pytest.LogCaptureFixture) -> None:
+    """A word of the library's has 96 phonemes at most: it says where words of others have more."""
+    for text, language in (("妈妈爸爸明天不跑步，朋友们买苹果和面包。", "cmn"), ("ままとぱぱはぱんをたべます。", "ja")):
+        one = labial.phonemes(text, language=language)
+        assert labial.phonemes(text * 20, language=language) == one * 20
+    assert not caplog.records
+    timings = labial.word_timings([("妈" * 60, 0, 9000)], language="cmn")
+    assert len(timings) == 96
+    assert [message[40:] for message in caplog.messages] == [" has 120 phonemes: the lips move for the first 96"]
+
+
 def test_any_text_is_read() -> None:
     """Half surrogates, NUL and characters of every plane."""
     timings = labial.word_timings([("\ud800", 0, 100), ("a\0b", 100, 200), ("\U0010ffff", 200, 300), ("", 300, 400)])
@@ -177,7 +225,7 @@ def test_there_are_ten_languages_and_more() -> None:
 @needs_espeak
 def test_kanji_become_kana(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     """By fugashi, for which a stand-in has what it says; without it kana alone are spoken, and kanji alone logged."""
-    said = {"私は話します": ("ワタクシ", "ワ", "ハナシ", "マス")}
+    said = {"私は": ("ワタクシ", "ワ"), "話します": ("ハナシ", "マス")}
 
     def tagger(text: str) -> List[SimpleNamespace]:
         return [SimpleNamespace(surface="", feature=SimpleNamespace(pron=kana, kana=kana)) for kana in said[text]]

@@ -38,7 +38,8 @@ _CANTONESE = re.compile(r"(?:zh|zho)(?:-hant)?-(?:yue|hk|mo)(?:-.*)?", re.IGNORE
 _JAPANESE = re.compile(r"ja(?:-.*)?")
 #: espeak-ng's voice that reads pinyin as such; "cmn" reads it as English.
 _PINYIN_VOICE = "cmn-latn-pinyin"
-_HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
+#: Characters of Chinese and kanji of Japanese.
+HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
 #: Marks of espeak-ng's: where words of another language begin, tones, and retroflex consonants.
 _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
 #: The vowel of Japanese "desu" and "masu", which is whispered.
@@ -84,6 +85,11 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
     return found
 
 
+def is_chinese(language: str) -> bool:
+    """Whether a language is written in characters that are a syllable each."""
+    return language == "yue" or bool(_CANTONESE.fullmatch(language) or _CHINESE.fullmatch(language))
+
+
 def speakable(text: str, voice: str) -> Tuple[str, str]:
     """A text as espeak-ng can say it aloud, and the voice that does: Chinese is written in pinyin, with tones, and
     Japanese in kana. Every other text and voice stays as it is. `voice` may have a variant ("cmn+f3")."""
@@ -91,7 +97,7 @@ def speakable(text: str, voice: str) -> Tuple[str, str]:
     if _CANTONESE.fullmatch(language):
         return text, f"yue{plus}{variant}"
     if _CHINESE.fullmatch(language):
-        return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if _HAN.search(text) else (text, voice)
+        return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if HAN.search(text) else (text, voice)
     if _JAPANESE.fullmatch(language):
         kana = _kana(text)
         if not kana.strip():
@@ -109,7 +115,7 @@ def _say_unspeakable(word: str, language: str) -> None:
     if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
         return
     _unspeakable[key] = None
-    is_kanji = _JAPANESE.fullmatch(language) and _HAN.search(word)
+    is_kanji = _JAPANESE.fullmatch(language) and HAN.search(word)
     hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
     _logger.warning("espeak-ng cannot speak %.40r in the language %r: the lips move for its time alone%s", word,
                     language, hint)
@@ -222,7 +228,7 @@ def _with_vowels(phonemes: Sequence[str]) -> List[str]:
 def _by_pinyin(word: str) -> Optional[List[str]]:
     """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
     English."""
-    text = _pinyin(word) if _HAN.search(word) else word
+    text = _pinyin(word) if HAN.search(word) else word
     found: List[str] = []
     for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
         syllables = _syllables(part.lower())
@@ -235,8 +241,8 @@ def _pinyin(word: str) -> str:
     try:
         from pypinyin import Style, lazy_pinyin
     except ImportError:
-        return "".join(part if not _HAN.match(part) else f" {_dictionary(part)} "
-                       for part in re.findall(f"(?:{_HAN.pattern})+|[^{_HAN.pattern[1:]}+", word))
+        return "".join(part if not HAN.match(part) else f" {_dictionary(part)} "
+                       for part in re.findall(f"(?:{HAN.pattern})+|[^{HAN.pattern[1:]}+", word))
     return " ".join(lazy_pinyin(word, style=Style.TONE3, v_to_u=True))
 
 
@@ -282,12 +288,12 @@ def _syllables(part: str) -> Optional[List[str]]:
 
 def _kana(word: str) -> str:
     """A word in kana, by fugashi where it has kanji; without it kanji are left out."""
-    if not _HAN.search(word):
+    if not HAN.search(word):
         return word
     tagger = _tagger()
     if tagger is None:
-        return _HAN.sub("", word)
-    said = (item.feature.pron or item.feature.kana or _HAN.sub("", item.surface) for item in tagger(word))
+        return HAN.sub("", word)
+    said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))
     return "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
 
 

@@ -15,8 +15,18 @@ from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, 
 from labial.core.guard import Guard, alone, duration, number
 from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
 from labial.core.words import OwnWords, labels
+from labial.corpus.languages import is_chinese
 from labial.corpus.messages import Messages, Stats
-from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
+from labial.corpus.words import (
+    ENGLISH,
+    Pronunciation,
+    characters_apart,
+    known_words,
+    own_words,
+    pronunciation,
+    stretches_of,
+    words_of,
+)
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import LABELS, Model, bundled
@@ -292,6 +302,8 @@ class Voice:
             texts = [numbers[text] for text, _, _ in items]
         else:
             self._model.nearest("SIL")  # raises an error for a model of other phonemes
+            if kind == "characters" and self._speaker.apart:
+                items = characters_apart([(str(text), start, end) for text, start, end in items])
             texts = [str(text).encode("utf-8", "replace")[:0xFFFF] for text, _, _ in items]
         if kind in ("words", "characters"):
             self._speaker.prepare([str(text) for text, _, _ in items], kind == "characters")
@@ -308,6 +320,7 @@ class _Speaker:
 
     def __init__(self, how: Pronunciation) -> None:
         self.asks = how.language != ENGLISH or how.numbers
+        self.apart = is_chinese(how.language)  # each character is a word
         self.own = own_words([], how)  # an error in a word of the caller's own is raised now
         self.callback = PRONOUNCE(self._ask)
         self._how, self._tail = how, ""
@@ -320,9 +333,8 @@ class _Speaker:
         if not self.asks:
             return
         if joined:  # characters: the last word may go on in the next message
-            text = self._tail + "".join(texts)
-            texts = text.split()
-            self._tail = texts[-1] if texts and not text[-1].isspace() else ""
+            texts = words_of(self._tail + "".join(texts))
+            self._tail = texts[-1]
         asked = stretches_of(texts, {**self._spoken, **self._how.own})
         if asked:
             if len(self._spoken) > _SPOKEN:
