@@ -29,6 +29,15 @@ int labial_voice_is_blank_item(const labial_voice_t *voice, uint32_t at)
     return bytes == size && labial_voice_is_blank(labial_voice_code(text, bytes));
 }
 
+uint32_t labial_voice_behind_blank(labial_voice_t *voice, uint32_t at, uint32_t begin)
+{
+    labial_voice_place_t *const item = voice->items + at;
+    if (!labial_voice_is_blank_item(voice, at) || (item->end != LABIAL_VOICE_OPEN && item->end > begin + ROUNDING))
+        return at;
+    item->start = begin;
+    return labial_voice_after(voice, at);
+}
+
 uint32_t labial_voice_before(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at)
 {
     return at - (at == labial_voice_limit(utterance) ? utterance->tail : voice->items[at].back);

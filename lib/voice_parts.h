@@ -119,6 +119,10 @@ static inline int labial_voice_is_blank(uint32_t code)
 /* Whether the item at `at` is such a character. */
 int labial_voice_is_blank_item(const labial_voice_t *voice, uint32_t at);
 
+/* The index of the first item that a message of characters from `begin` on replaces, `at` or the one behind it: a blank
+ * that ended the message before still ends its last word, though rounding moved it. */
+uint32_t labial_voice_behind_blank(labial_voice_t *voice, uint32_t at, uint32_t begin);
+
 /* The end of an utterance's places. */
 static inline uint32_t labial_voice_limit(const labial_voice_utterance_t *utterance)
 {

@@ -28,8 +28,8 @@
  * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
  *   own sound is heard or labial_voice_begin() says when that is.
  * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
- *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
- *   kind (labial_voice_kind_t) count.
+ *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first
+ *   20 ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
  * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
  *   where the next one begins.
  *
