@@ -248,29 +248,34 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds)
     return LABIAL_OK;
 }
 
-int labial_voice_done(labial_voice_t *voice)
+int64_t labial_voice_latest(labial_voice_t *voice)
 {
     unsigned i;
-    uint32_t places = 0;
-    int64_t latest = 0;
-    if (labial_voice_status(voice) != LABIAL_OK)
-        return 0;
+    int64_t latest = -1;
     for (i = 0; i < voice->utterance_count; i++) {
         const int64_t limit = voice->utterances[i].limit;
         int64_t end;
         if (voice->utterances[i].places == 0u)
             continue;
         end = labial_voice_end(voice, i);
-        places += voice->utterances[i].places;
         if (end > limit)
             end = limit;
         if (end > latest)
             latest = end;
     }
-    if (voice->step != voice->steps)
+    return latest;
+}
+
+int labial_voice_done(labial_voice_t *voice)
+{
+    int64_t latest;
+    if (labial_voice_status(voice) != LABIAL_OK || voice->step != voice->steps)
         return 0;
-    if (places == 0u)
+    latest = labial_voice_latest(voice);
+    if (latest < 0)
         return voice->finished || voice->cancelled;
+    if (voice->eased && !voice->changed)
+        return voice->finished;
     latest += voice->offset + (int64_t)LABIAL_VOICE_REST;
     return voice->finished && (int64_t)voice->next * 1000 >= latest * voice->model->frames_per_second;
 }

@@ -55,6 +55,9 @@ static inline int64_t labial_voice_now(const labial_voice_t *voice)
 /* Moves the utterances that are queued behind one that was told more of. */
 void labial_voice_requeue(labial_voice_t *voice, unsigned position);
 
+/* The end of all that is known, milliseconds from which the offset is left out; -1 if nothing is. */
+int64_t labial_voice_latest(labial_voice_t *voice);
+
 /* Of an utterance that a message belongs to: it is over; or there is none yet, and the message has nothing for it. */
 #define LABIAL_VOICE_IS_OVER (-1000)
 #define LABIAL_VOICE_HAS_NONE (-1001)

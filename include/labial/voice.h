@@ -239,11 +239,13 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS]);
 
 /*
- * The next pose on the way to the neutral face after labial_voice_cancel(), for a clock that stands with the sound: once
- * in each frame's time in which labial_voice_next() gives none. It is no frame of the sound, so that what is told for
- * the time at which the clock stands begins there.
+ * The next pose on the way to the neutral face, for a clock that stands with the sound: once in each frame's time in
+ * which labial_voice_next() gives none. The way begins at once after labial_voice_cancel(); after labial_voice_finish()
+ * where the clock stands at the end of what is known or up to 100 ms before it, once it stood for 200 ms. It is no
+ * frame of the sound, so that what is told for the time at which the clock stands begins there.
  *
- * Returns LABIAL_OK, LABIAL_DONE where there is no such way or at its end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK, LABIAL_WAITING until the clock stood for so long, LABIAL_DONE where there is no such way or at its
+ * end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
 
@@ -257,7 +259,8 @@ int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
 int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISEMES]);
 
 /* Whether nothing more will move: after labial_voice_finish(), LABIAL_VOICE_REST milliseconds after the last item, if
- * there was any; after labial_voice_cancel(), when the face is neutral. 0 for a null or uninitialised voice. */
+ * there was any, or at the end of labial_voice_ease()'s way; after labial_voice_cancel(), when the face is neutral. 0
+ * for a null or uninitialised voice. */
 int labial_voice_done(labial_voice_t *voice);
 
 /* What it was told so far; all zero for a null or uninitialised voice. */
@@ -362,6 +365,8 @@ struct labial_voice {
     uint8_t streaming; /* the stream makes the frames; else the face is neutral */
     uint8_t begun;     /* `shown` holds */
     uint8_t moved;     /* the stream made a frame */
+    uint8_t still;     /* frames' times since the last one, before the face eases to rest; */
+    uint8_t eased;     /* it does or did since then */
     uint8_t given_phoneme;
     int16_t shown[LABIAL_CHANNELS], made[LABIAL_CHANNELS];
     int32_t fade[LABIAL_CHANNELS]; /* is added to the stream's frames, less with each step */

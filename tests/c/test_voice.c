@@ -1234,6 +1234,62 @@ TEST_AFTER(begin_frames, a_face_eases_while_the_clock_stands)
     assert_memory_equal(shown[60], wanted[60], 51 * sizeof *shown);
 }
 
+/* A clock that is the sound stops at its end: behind labial_voice_finish() the face comes to rest all the same. */
+TEST_AFTER(begin_frames, a_face_comes_to_rest_at_the_end_while_the_clock_stands)
+{
+    static uint32_t before[sizeof memory / sizeof *memory];
+    int16_t faps[LABIAL_CHANNELS];
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* nothing was shown, */
+    show_until(20);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* or is known */
+    voice.finished = 0;
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 100, 1000), LABIAL_OK);
+    show_until(780);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* the player waits for sound */
+    show_until(900);
+    for (unsigned i = 0; i < 8; i++) { /* a clock of large steps */
+        assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_WAITING);
+    }
+    show_until(940);
+    for (unsigned i = 0; i < 25; i++) {
+        assert_int_equal(labial_voice_done(&voice), 0);
+        assert_int_equal(labial_voice_next(&voice, 940, NULL, faps), LABIAL_WAITING);
+        assert_int_equal(labial_voice_ease(&voice, faps), i < 10 ? LABIAL_WAITING : LABIAL_OK);
+    }
+    assert_memory_equal(faps, rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    memcpy(before, memory, sizeof memory);
+    labial_voice_t twin = voice;
+    assert_int_equal(labial_voice_begin(&voice, 1400, 0), LABIAL_OK); /* the next answer waits for its sound */
+    assert_int_equal(labial_voice_done(&voice), 0);
+    tell_sentence(0, SENTENCE);
+    want(1400);
+    show_until(2580);
+    assert_memory_equal(shown[80], wanted[80], 50 * sizeof *shown);
+    frame_count = 48;
+    memcpy(memory, before, sizeof memory);
+    voice = twin; /* or the clock goes on, */
+    show_until(1600);
+    assert_memory_equal(shown[80], rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    frame_count = 48;
+    memcpy(memory, before, sizeof memory);
+    voice = twin; /* or more was told of what ended */
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    voice.utterances[0].identity = 7;
+    labial_voice_item_t more = { 1000 * MS, 1500 * MS, NULL, 0, SPEECH_EN_IY };
+    labial_voice_message_t late = { &more, 1, 7, 0, 0, LABIAL_VOICE_PHONEMES, LABIAL_VOICE_ABSOLUTE };
+    assert_int_equal(labial_voice_tell(&voice, &late), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    show_until(1200);
+    assert_memory_not_equal(shown[60], rest, sizeof rest);
+}
+
 TEST_AFTER(begin_frames, an_end_right_after_a_cancel_waits_for_the_face)
 {
     tell_sentence(0, SENTENCE);

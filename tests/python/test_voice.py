@@ -147,6 +147,38 @@ def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
         assert not begins or played(voice, 0.62, 1.6)[-30:] == played(other, 0, 1.6)[-30:]
 
 
+def test_a_face_comes_to_rest_at_the_end_while_the_clock_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock that is the sound stops with it: then time passes behind :meth:`finish`, once the clock stood a while."""
+    passed = 100.0
+    monkeypatch.setattr("labial.runtime.voice.time.monotonic", lambda: passed)
+    with labial.Voice() as voice:
+        voice.push("AA", 0.0, 1.0)
+        voice.finish()
+        played(voice, 0, 0.8)
+        passed += 5.0
+        assert voice.played(0.8) == [] and not voice.done  # a player that waits for sound
+        stands = played(voice, 0.82, 0.96)[-1]
+        shown: List[Tuple[int, ...]] = []
+        for _ in range(60):
+            passed += 0.01
+            shown += [frame.faps for frame in voice.played(0.96)]
+            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.215)
+        assert shown[0] != stands and shown[-1] == (0,) * 13
+        assert voice.time == 0.98
+
+
+def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
+    async def run(voice: labial.Voice) -> List[labial.Frame]:
+        begin = time.monotonic()
+        return [frame async for frame in voice.follow(lambda: min(time.monotonic() - begin, 0.3))]
+
+    with labial.Voice() as voice:
+        voice.push("AA", 0.0, 0.3)
+        voice.finish()
+        frames = asyncio.run(asyncio.wait_for(run(voice), 20))
+        assert frames[-1].faps == (0,) * 13 and frames[-1].number == 15
+
+
 @pytest.mark.skipif(not shutil.which("espeak-ng"), reason="no espeak-ng: install the Debian package")
 @pytest.mark.parametrize("language, text, closed", [
     ("cmn", "妈妈爸爸明天不跑步，朋友们买苹果和面包。", "妈爸明不跑步朋们买苹面包"),

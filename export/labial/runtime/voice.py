@@ -13,7 +13,18 @@ import warnings
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone, duration, number
-from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
+from labial.core.library import (
+    CANCEL_MAX,
+    ERROR_FULL,
+    ERROR_STATE,
+    OK,
+    PRONOUNCE,
+    VISEMES,
+    WAITING,
+    checked,
+    library,
+    memory,
+)
 from labial.core.words import OwnWords, labels
 from labial.corpus.languages import is_chinese
 from labial.corpus.messages import Messages, Stats
@@ -98,7 +109,7 @@ class Voice:
         else:
             checked(self._library.voice_words(self._memory, self._speaker.own.place))
         self._faps, self._shares = (ctypes.c_int16 * CHANNELS)(), (ctypes.c_uint8 * VISEMES)()
-        self._cancelled, self._eased = 0.0, 0  # when the last cancel was, and the poses since then
+        self._since, self._eased = 0.0, 0  # when the clock moved last, or a cancel was, and the poses since then
         self._heard = -math.inf  # the time of the call before
 
     # ---- What becomes known
@@ -173,7 +184,7 @@ class Voice:
         self._open()
         length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
         self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
-        self._cancelled, self._eased = time.monotonic(), 0
+        self._since, self._eased = time.monotonic(), 0
 
     # ---- What is shown
 
@@ -183,8 +194,9 @@ class Voice:
         to three.
 
         A clock that goes back, or None from one that has not begun, yields none; but while it stands with the sound
-        after :meth:`cancel`, the face comes to rest in time that passes. More than a second after the last call, only
-        the latest frame is returned. Raises LabialError for more than a year and what is no number.
+        after :meth:`cancel`, or after :meth:`finish` at the end of what is known, the face comes to rest in time that
+        passes. More than a second after the last call, only the latest frame is returned. Raises LabialError for more
+        than a year and what is no number.
         """
         self._open()
         heard = -1.0 if seconds is None else number(seconds, "a time")
@@ -194,9 +206,16 @@ class Voice:
         due = math.floor(heard * self.fps + 1e-6)
         while due >= 0 and self._checked(self._library.voice_frame(self._memory, due, self._faps)) == OK:
             frames.append(self._frame())
-        passed = math.floor((time.monotonic() - self._cancelled) * self.fps) if heard <= self._heard else 0
-        while self._eased < passed and self._library.voice_ease(self._memory, self._faps) == OK:
-            frames.append(self._frame())
+        now = time.monotonic()
+        if heard > self._heard and not self._library.voice_cancelled(self._memory):
+            self._since, self._eased = now, 0
+        passed = math.floor((now - self._since) * self.fps) if heard <= self._heard else 0
+        result = OK
+        while self._eased < passed and result in (OK, WAITING):
+            result = self._library.voice_ease(self._memory, self._faps)
+            if result == OK:
+                frames.append(self._frame())
+            self._eased += result == WAITING
         self._heard = heard
         return frames
 
@@ -217,8 +236,8 @@ class Voice:
     @property
     @alone
     def done(self) -> bool:
-        """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any;
-        after :meth:`cancel`, when the face is neutral; and when the voice is closed."""
+        """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any,
+        also where the clock stands; after :meth:`cancel`, when the face is neutral; and when the voice is closed."""
         return self._memory is None or bool(self._library.voice_done(self._memory))
 
     @property
