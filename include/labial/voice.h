@@ -207,9 +207,9 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 /*
  * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
  * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
- * message; that of an utterance that began by itself moves it to `at`. 0 does the same with the last utterance if that
- * began by itself without an identity, and if nothing of it would be heard otherwise, or it was told after
- * labial_voice_finish() and is not over. After a cancel, items count again from here on.
+ * message; that of an utterance that began by itself moves it to `at`. 0 does the same with the first utterance that
+ * waits: one that began by itself behind another one, or after a cancel with LABIAL_VOICE_BEHIND, and is not over; or
+ * of which nothing would be heard otherwise. After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
@@ -298,7 +298,7 @@ struct labial_voice_utterance {
     uint8_t kind;      /* that counts */
     uint8_t tail;      /* places of the last item */
     uint8_t queued;    /* it began by itself: behind the one before it */
-    uint8_t early;     /* it was told after labial_voice_finish(), by a message without an identity */
+    uint8_t early;     /* it began by itself, or after a cancel: its sound was not heard of yet */
     uint8_t joined;    /* its last message was */
 };
 

@@ -537,7 +537,7 @@ TEST_AFTER(begin, what_is_heard_is_not_moved)
     message.utterance = name("a");
     tell_one("AA", 500, 1700); /* late: it is cut where the next one began */
     assert_string_equal(known(), "0-500 M, 500-1400 S");
-    assert_int_equal(labial_voice_begin(&voice, 2000, 0), LABIAL_OK); /* told by the caller: it is not moved, either */
+    assert_int_equal(labial_voice_begin(&voice, 2000, name("c")), LABIAL_OK); /* nor what the caller tells */
     message.utterance = name("b");
     tell_one("AA", 900, 2700);
     assert_string_equal(known(), "0-500 M, 500-1400 S, 1400-2000 AA");
@@ -580,6 +580,68 @@ TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
     tell_one("S", 0, 500);
     assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
                                  "5200-5300 F, 6000-6500 M, 7000-7500 S");
+}
+
+/* A service that names its answers, and a client that does not know the names: each sound is that of the first answer
+ * that waits. */
+TEST_AFTER(begin, named_utterances_that_are_told_before_they_begin)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 500);
+    message.utterance = name("c");
+    tell_one("F", 0, 500);
+    assert_string_equal(known(), "0-500 M, 500-1000 S, 1000-1500 F");
+    assert_int_equal(labial_voice_begin(&voice, 0, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 500-1000 S, 1000-1500 F");
+    play(800); /* the second one's sound is late */
+    assert_int_equal(labial_voice_begin(&voice, 900, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1900 F");
+    message.utterance = name("b");
+    tell_one("AA", 500, 700);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 1600-2100 F");
+    play(2000);
+    assert_int_equal(labial_voice_begin(&voice, 2200, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F");
+    assert_int_equal(labial_voice_begin(&voice, 2900, 0), LABIAL_OK); /* nothing waits */
+    message.utterance = name("d");
+    tell_one("S", 0, 500);
+    message.utterance = name("e");
+    tell_one("M", 0, 500);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F, 2900-3400 S, 3400-3900 M");
+    play(6000);
+    assert_int_equal(labial_voice_begin(&voice, 6000, 0), LABIAL_OK); /* it is over */
+    message.utterance = name("f");
+    tell_one("S", 0, 500);
+    assert_string_equal(known(), "2900-3400 S, 3400-3900 M, 6000-6500 S");
+}
+
+/* Both seem to be heard by now, but the sound of the first one begins later. */
+TEST_AFTER(begin, what_waits_behind_an_utterance_that_is_late_waits_longer)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 100);
+    message.utterance = name("b");
+    tell_one("S", 0, 530);
+    message.utterance = name("c");
+    tell_one("F", 0, 500);
+    play(620);
+    assert_int_equal(labial_voice_begin(&voice, 640, name("b")), LABIAL_OK);
+    assert_string_equal(known(), "0-100 M, 640-1170 S, 1170-1670 F");
+}
+
+TEST_AFTER(begin, what_begins_at_once_after_a_cancel_may_be_told_its_sound)
+{
+    tell_one("M", 0, 500);
+    play(100);
+    assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    message.utterance = name("b");
+    tell_one("S", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 400, 0), LABIAL_OK);
+    tell_one("AA", 500, 600);
+    assert_string_equal(known(), "400-900 S, 900-1000 AA");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)
@@ -631,7 +693,7 @@ TEST_AFTER(begin, utterances_that_were_not_told_of_yet)
     assert_string_equal(known(), "0-500 M, 600-700 S, 1600-1700 S, 1700-2000 F, 2600-2700 S");
     assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
     assert_int_equal(voice.used, 0);
-    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 0, 0), LABIAL_OK);
     message.utterance = 0;
     tell_one("M", 0, 100);
     assert_string_equal(known(), "0-100 M");
@@ -791,7 +853,7 @@ TEST_AFTER(begin, there_are_only_so_many_utterances)
     message.utterance = name(text);
     item("M", 0, 100);
     assert_int_equal(tell(), LABIAL_ERROR_FULL);
-    assert_int_equal(labial_voice_begin(&voice, 5, 0), LABIAL_ERROR_FULL);
+    assert_int_equal(labial_voice_begin(&voice, 5, name("0")), LABIAL_ERROR_FULL);
     assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_ERROR_FULL);
     assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
     message.utterance = 0;

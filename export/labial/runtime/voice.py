@@ -161,8 +161,9 @@ class Voice:
         """The next utterance, whose sound begins when `at` seconds were heard: times that are told count from there.
 
         Without `at` it begins where the former one ends, as far as is known, or now if that is over. `utterance` is
-        what the service calls it in its messages; without it, it is that of the first message that tells one. An
-        utterance that was told before its sound began is moved to `at`.
+        what the service calls it in its messages; without it, it is that of the first message that tells one. What
+        waits, since it was told before its sound began, is moved to `at`: the utterance of this name, or without a name
+        the first one that is not over.
         """
         self._open()
         self._checked(self._library.voice_begin(self._memory, -1.0 if at is None else _seconds(at),
