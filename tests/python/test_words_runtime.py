@@ -223,6 +223,29 @@ def test_there_are_ten_languages_and_more() -> None:
 
 
 @needs_espeak
+def test_the_n_of_japanese() -> None:
+    """Before p, b and m lips close; before vowels, w, y and h they do not round."""
+    for word, phonemes in (("がんばる", "G AE M B AE L UH"), ("えんぴつ", "EH M P IY S UH"), ("さんま", "S AE M M AE"),
+                           ("ほんや", "HH OW NG Y AE"), ("でんわ", "D EH NG W AE"), ("パン", "P AE NG")):
+        assert labial.phonemes(word, language="ja") == phonemes.split()
+
+
+@needs_espeak
+def test_numbers_of_chinese() -> None:
+    """As numbers; years, long ones and those that begin with 0 digit by digit. Tones of pinyin are not said."""
+    for digits, spoken_so in {
+            "0": "零", "5": "五", "10": "十", "15": "十五", "20": "二十", "105": "一百零五", "110": "一百一十",
+            "1005": "一千零五", "1984": "一九八四", "2024": "二零二四", "2100": "二千一百", "10000": "一万",
+            "10050": "一万零五十", "105000": "十万五千",
+            "1234567": "一百二十三万四千五百六十七", "100000001": "一亿零一",
+            "1000000000000": "一万亿", "007": "零零七", "3.14": "三点一四", "１２": "十二",
+            "12345678901234567": "一二三四五六七八九零一二三四五六七"}.items():  # fmt: skip
+        assert labial.phonemes(digits, language="cmn") == labial.phonemes(spoken_so, language="cmn"), digits
+    assert labial.phonemes("第3", language="cmn") == labial.phonemes("第三", language="cmn")
+    assert labial.phonemes("ni3hao3", language="cmn") == "N IY HH AW".split()
+
+
+@needs_espeak
 def test_kanji_become_kana(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     """By fugashi, for which a stand-in has what it says; without it kana alone are spoken, and kanji alone logged."""
     said = {"私は": ("ワタクシ", "ワ"), "話します": ("ハナシ", "マス")}

@@ -42,6 +42,8 @@ _PINYIN_VOICE = "cmn-latn-pinyin"
 HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
 #: Marks of espeak-ng's: where words of another language begin, tones, and retroflex consonants.
 _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
+#: The n of Japanese where espeak-ng has a nasal vowel: before p, b, m, and before others.
+_N = re.compile("ũ(?=_[ˈˌ]?[pbm])"), re.compile("ũ")
 #: The vowel of Japanese "desu" and "masu", which is whispered.
 _DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
 _VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
@@ -144,6 +146,8 @@ def _spoken(texts: Sequence[str], language: str, between: str = "") -> List[List
     lines = _ipa(texts, language)
     if between:
         lines = [word for word in lines[0].split(between) if word.strip("_")]
+    if _JAPANESE.fullmatch(language):
+        lines = [_N[1].sub("ɴ", _N[0].sub("m", line)) for line in lines]
     tonal = language.split("-")[0] in ("yue", "th", "vi", "my", "hak", "nan")
     result = [_phonemes(line, tonal) for line in lines]
     return [_with_vowels(phonemes) for phonemes in result] if language.split("-")[0] == "ar" else result
@@ -224,10 +228,30 @@ def _with_vowels(phonemes: Sequence[str]) -> List[str]:
 
 # ---- Chinese
 
+#: Numbers as they are spoken; a digit behind a Latin letter is a tone of pinyin.
+_NUMBER = re.compile(r"(?<![A-Za-z\u00c0-\u024f\u0300-\u036f])\d+(?:\.\d+)?|\d{2,}")
+_DIGITS, _TENS, _MYRIADS = "零一二三四五六七八九", ("", "十", "百", "千"), ("", "万", "亿", "万亿")
+
+
+def _spelt_out(found: re.Match[str]) -> str:
+    """A number in characters. What is longer than they tell, begins with 0 or may be a year is read digit by digit."""
+    whole, point, part = found[0].partition(".")
+    digits = "".join(_DIGITS[int(digit)] for digit in whole)
+    if len(whole) <= 16 and whole[0] != "0" and not re.fullmatch(r"1[1-9]\d\d|20\d\d", found[0]):
+        digits = ""
+        for place, digit in zip(reversed(range(len(whole))), map(int, whole)):
+            digits += _DIGITS[digit] + _TENS[place % 4] if digit else _DIGITS[0]
+            if place % 4 == 0:
+                group = whole[max(0, len(whole) - place - 4) : len(whole) - place]
+                digits = digits.rstrip(_DIGITS[0]) + (_MYRIADS[place // 4] if int(group) else _DIGITS[0])
+        digits = re.sub("^一十", "十", re.sub("零+", "零", digits).rstrip("零"))
+    return digits + ("点" + "".join(_DIGITS[int(digit)] for digit in part) if point else "")
+
 
 def _by_pinyin(word: str) -> Optional[List[str]]:
     """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
     English."""
+    word = _NUMBER.sub(_spelt_out, word)
     text = _pinyin(word) if HAN.search(word) else word
     found: List[str] = []
     for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
