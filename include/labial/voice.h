@@ -116,7 +116,7 @@ typedef enum {
     LABIAL_VOICE_CHAINED,  /* from the end of the message before */
     LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
                             * before: if it begins no later than the joined one before it and at least half of its time,
-                            * more than 20 ms, was told. A message that is told twice counts once. */
+                            * more than 20 ms, was told. Of the last 16 messages none counts twice. */
 } labial_voice_times_t;
 
 /* An item of a message. */
