@@ -79,18 +79,23 @@ static int append_behind(labial_voice_t *voice, uint32_t identity)
     return result;
 }
 
-void labial_voice_requeue(labial_voice_t *voice, unsigned position)
+/* Moves the utterances behind one that are queued and begin after `moment`. */
+static void requeue_after(labial_voice_t *voice, unsigned position, int64_t moment)
 {
-    const int64_t now = labial_voice_now(voice);
     for (; position + 1u < voice->utterance_count; position++) {
         labial_voice_utterance_t *const utterance = voice->utterances + position;
         const int64_t end = labial_voice_end(voice, position);
-        if (!utterance[1].queued || utterance[1].origin <= now || end <= utterance[1].origin ||
+        if (!utterance[1].queued || utterance[1].origin <= moment || end <= utterance[1].origin ||
             utterance[1].limit <= utterance[1].origin)
             return;
         utterance->limit = utterance[1].origin = end;
         voice->stale = 1;
     }
+}
+
+void labial_voice_requeue(labial_voice_t *voice, unsigned position)
+{
+    requeue_after(voice, position, labial_voice_now(voice));
 }
 
 int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t places)
@@ -111,7 +116,7 @@ int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t
             return LABIAL_ERROR_FULL;
         result = append_behind(voice, identity);
         if (result == LABIAL_OK)
-            voice->utterances[voice->utterance_count - 1u].early = !identity;
+            voice->utterances[voice->utterance_count - 1u].early = 1;
     }
     if (result != LABIAL_OK)
         return result;
@@ -121,31 +126,30 @@ int labial_voice_utterance_of(labial_voice_t *voice, uint32_t identity, uint32_t
     return (int)voice->utterance_count - 1;
 }
 
-/* The sound of an utterance that waited, or whose sound was not heard of yet, begins. */
+/* The sound of an utterance that waited, or whose sound was not heard of yet, begins; those behind it wait. */
 static void place_utterance(labial_voice_t *voice, unsigned position, int64_t origin)
 {
     labial_voice_utterance_t *const utterance = voice->utterances + position;
     utterance->origin = origin;
     utterance->queued = 0;
     end_before(voice, position, origin);
-    labial_voice_requeue(voice, position);
+    requeue_after(voice, position, INT64_MIN);
 }
 
-/* The position of the last utterance if it was told before labial_voice_begin() said that its sound begins at `at`; else
- * -1. */
+/* The position of the first utterance that was told before labial_voice_begin() said that its sound begins at `at`: it
+ * began by itself and is not over, or nothing of it would be heard otherwise; else -1. */
 static int told_before(labial_voice_t *voice, uint64_t at)
 {
-    const labial_voice_utterance_t *utterance;
-    unsigned last;
-    if (voice->utterance_count == 0u || at == LABIAL_VOICE_BEHIND)
-        return -1;
-    last = voice->utterance_count - 1u;
-    utterance = voice->utterances + last;
-    if (!utterance->queued || utterance->identity || utterance->places == 0u)
-        return -1;
-    if ((int64_t)at <= utterance->origin) /* nothing of it would be heard */
-        return (int)last;
-    return utterance->early && labial_voice_end(voice, last) > labial_voice_now(voice) ? (int)last : -1;
+    unsigned i;
+    for (i = 0; at != LABIAL_VOICE_BEHIND && i < voice->utterance_count; i++) {
+        const labial_voice_utterance_t *const utterance = voice->utterances + i;
+        if (!utterance->queued || utterance->places == 0u || utterance->limit <= utterance->origin)
+            continue;
+        if ((int64_t)at <= utterance->origin ||
+            (utterance->early && labial_voice_end(voice, i) > labial_voice_now(voice)))
+            return (int)i;
+    }
+    return -1;
 }
 
 /* ---- Beginning and end ------------------------------------------------------------------------------------------- */
@@ -201,9 +205,10 @@ int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds)
 int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance)
 {
     unsigned i;
-    int position, result = labial_voice_status(voice);
+    int position, was_cancelled, result = labial_voice_status(voice);
     if (result != LABIAL_OK)
         return result;
+    was_cancelled = voice->cancelled;
     if (at != LABIAL_VOICE_BEHIND && at > LABIAL_VOICE_CLOCK)
         return LABIAL_ERROR_RANGE;
     position = utterance ? position_of(voice, utterance) : told_before(voice, at);
@@ -219,6 +224,7 @@ int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance)
         result = append_utterance(voice, (int64_t)at, utterance, 0);
     if (result != LABIAL_OK)
         return result;
+    voice->utterances[voice->utterance_count - 1u].early = was_cancelled && at == LABIAL_VOICE_BEHIND;
     voice->finished = voice->cancelled = 0;
     for (i = 0; i < LABIAL_VOICE_UTTERANCES; i++)
         if (voice->gone[i] == utterance)
@@ -248,29 +254,34 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds)
     return LABIAL_OK;
 }
 
-int labial_voice_done(labial_voice_t *voice)
+int64_t labial_voice_latest(labial_voice_t *voice)
 {
     unsigned i;
-    uint32_t places = 0;
-    int64_t latest = 0;
-    if (labial_voice_status(voice) != LABIAL_OK)
-        return 0;
+    int64_t latest = -1;
     for (i = 0; i < voice->utterance_count; i++) {
         const int64_t limit = voice->utterances[i].limit;
         int64_t end;
         if (voice->utterances[i].places == 0u)
             continue;
         end = labial_voice_end(voice, i);
-        places += voice->utterances[i].places;
         if (end > limit)
             end = limit;
         if (end > latest)
             latest = end;
     }
-    if (voice->step != voice->steps)
+    return latest;
+}
+
+int labial_voice_done(labial_voice_t *voice)
+{
+    int64_t latest;
+    if (labial_voice_status(voice) != LABIAL_OK || voice->step != voice->steps)
         return 0;
-    if (places == 0u)
+    latest = labial_voice_latest(voice);
+    if (latest < 0)
         return voice->finished || voice->cancelled;
+    if (voice->eased && !voice->changed)
+        return voice->finished;
     latest += voice->offset + (int64_t)LABIAL_VOICE_REST;
     return voice->finished && (int64_t)voice->next * 1000 >= latest * voice->model->frames_per_second;
 }

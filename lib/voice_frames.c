@@ -13,6 +13,9 @@
 /* How long the face takes to ease to rest, milliseconds; it is there LABIAL_VOICE_REST after the last item. */
 #define REST_EASING 300u
 
+/* How much shorter than what is known a sound may be that has ended, milliseconds. */
+#define SHORTER 100
+
 /* ---- The stream -------------------------------------------------------------------------------------------------- */
 
 static void on_voice_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -238,8 +241,10 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
     is_late = due - voice->next >= rate;
     if (is_late)
         voice->next = due;
-    if (voice->changed || is_late)
+    if (voice->changed || is_late || voice->eased)
         follow_changes(voice, is_late);
+    voice->eased = 0;
+    voice->still = 0;
     make_frame(voice, voice->next);
     show_frame(voice);
     if (frame)
@@ -249,13 +254,38 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
     return LABIAL_OK;
 }
 
+/* Whether the sound has ended, as far as is known. */
+static int is_at_end(labial_voice_t *voice)
+{
+    const int64_t latest = labial_voice_latest(voice);
+    return voice->finished && latest >= 0 && labial_voice_now(voice) + SHORTER >= latest + voice->offset;
+}
+
+/* Frames of so many milliseconds. */
+static uint32_t frames_of(const labial_voice_t *voice, uint32_t milliseconds)
+{
+    return milliseconds * voice->model->frames_per_second / 1000u;
+}
+
 int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS])
 {
     if (!voice || !faps)
         return LABIAL_ERROR_NULL;
     if (!voice->model)
         return LABIAL_ERROR_STATE;
-    if (voice->streaming || voice->step == voice->steps)
+    if (voice->streaming) {
+        if (!is_at_end(voice))
+            return LABIAL_DONE;
+        if (voice->still < frames_of(voice, LABIAL_VOICE_REST - REST_EASING)) {
+            voice->still++;
+            return LABIAL_WAITING;
+        }
+        voice->streaming = 0;
+        voice->eased = 1;
+        memset(voice->made, 0, sizeof voice->made);
+        labial_voice_begin_fade(voice, labial_fade_frames(REST_EASING, voice->model->frames_per_second));
+    }
+    if (voice->step == voice->steps)
         return LABIAL_DONE;
     show_frame(voice);
     memcpy(faps, voice->shown, sizeof voice->shown);

@@ -12,6 +12,32 @@
 /* What is over is kept for so many milliseconds more. */
 #define ITEMS_KEPT 1000
 
+/* Milliseconds by which rounding may move a blank. */
+#define ROUNDING 20u
+
+const uint16_t labial_voice_blanks[LABIAL_VOICE_BLANKS][2] = {
+    { 0x09, 0x0d },     { 0x1c, 0x20 },     { 0x85, 0x85 },     { 0xa0, 0xa0 },     { 0x1680, 0x1680 },
+    { 0x2000, 0x200a }, { 0x2014, 0x2015 }, { 0x2025, 0x2026 }, { 0x2028, 0x2029 }, { 0x202f, 0x202f },
+    { 0x205f, 0x205f }, { 0x3000, 0x3002 }, { 0x3008, 0x3011 }, { 0x3014, 0x301b }, { 0x30fb, 0x30fb },
+    { 0xff01, 0xff01 }, { 0xff0c, 0xff0c }, { 0xff1a, 0xff1b }, { 0xff1f, 0xff1f }
+};
+
+int labial_voice_is_blank_item(const labial_voice_t *voice, uint32_t at)
+{
+    const char *const text = labial_voice_text(voice, at);
+    const unsigned size = voice->items[at].size, bytes = labial_voice_bytes(text, size);
+    return bytes == size && labial_voice_is_blank(labial_voice_code(text, bytes));
+}
+
+uint32_t labial_voice_behind_blank(labial_voice_t *voice, uint32_t at, uint32_t begin)
+{
+    labial_voice_place_t *const item = voice->items + at;
+    if (!labial_voice_is_blank_item(voice, at) || (item->end != LABIAL_VOICE_OPEN && item->end > begin + ROUNDING))
+        return at;
+    item->start = begin;
+    return labial_voice_after(voice, at);
+}
+
 uint32_t labial_voice_before(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t at)
 {
     return at - (at == labial_voice_limit(utterance) ? utterance->tail : voice->items[at].back);
@@ -163,7 +189,7 @@ static void forget_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
         const uint32_t end = item->end == LABIAL_VOICE_OPEN ? follows : item->end;
         if (after == last || end >= limit || follows >= limit)
             return;
-        if (utterance->kind != LABIAL_VOICE_CHARACTERS || (item->size == 1u && item->text[0] == ' ')) {
+        if (utterance->kind != LABIAL_VOICE_CHARACTERS || labial_voice_is_blank_item(voice, at)) {
             utterance->over = end;
             utterance->places -= after - utterance->first;
             utterance->first = after;

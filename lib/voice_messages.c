@@ -193,8 +193,11 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
     if (message->kind != utterance->kind) {
         to = labial_voice_limit(utterance);
     } else if (found.count > 0u) {
-        from = labial_voice_find(voice, utterance, milliseconds_of(base + found.begin));
+        const uint32_t begin = milliseconds_of(base + found.begin);
+        from = labial_voice_find(voice, utterance, begin);
         to = labial_voice_find(voice, utterance, milliseconds_of(base + found.reach));
+        if (message->kind == LABIAL_VOICE_CHARACTERS && from < to)
+            from = labial_voice_behind_blank(voice, from, begin);
     }
     if (found.places > labial_voice_free(voice) + (to - from))
         return LABIAL_ERROR_FULL;

@@ -55,6 +55,9 @@ static inline int64_t labial_voice_now(const labial_voice_t *voice)
 /* Moves the utterances that are queued behind one that was told more of. */
 void labial_voice_requeue(labial_voice_t *voice, unsigned position);
 
+/* The end of all that is known, milliseconds from which the offset is left out; -1 if nothing is. */
+int64_t labial_voice_latest(labial_voice_t *voice);
+
 /* Of an utterance that a message belongs to: it is over; or there is none yet, and the message has nothing for it. */
 #define LABIAL_VOICE_IS_OVER (-1000)
 #define LABIAL_VOICE_HAS_NONE (-1001)
@@ -83,6 +86,45 @@ static inline const char *labial_voice_text(const labial_voice_t *voice, uint32_
     return (const char *)(const void *)voice->items + (size_t)at * sizeof(labial_voice_place_t) +
            offsetof(labial_voice_place_t, text);
 }
+
+/* The bytes of the character that begins a text of `left` bytes. */
+static inline unsigned labial_voice_bytes(const char *text, unsigned left)
+{
+    unsigned bytes = 1;
+    while (bytes < left && bytes < 4u && ((unsigned char)text[bytes] & 0xc0u) == 0x80u)
+        bytes++;
+    return bytes;
+}
+
+/* The number of a character, which its bytes of UTF-8 are; any number of what is none. */
+static inline uint32_t labial_voice_code(const char *text, unsigned bytes)
+{
+    uint32_t code = (unsigned char)*text & (bytes > 1u ? 0x3fu >> (bytes - 1u) : 0xffu);
+    unsigned i;
+    for (i = 1; i < bytes; i++)
+        code = code << 6 | ((unsigned char)text[i] & 0x3fu);
+    return code;
+}
+
+/* Blanks, and punctuation of Chinese and Japanese, behind which no blank is written: the first and the last one. */
+#define LABIAL_VOICE_BLANKS 19u
+extern const uint16_t labial_voice_blanks[LABIAL_VOICE_BLANKS][2];
+
+static inline int labial_voice_is_blank(uint32_t code)
+{
+    unsigned i;
+    for (i = 0; i < LABIAL_VOICE_BLANKS; i++)
+        if (code >= labial_voice_blanks[i][0] && code <= labial_voice_blanks[i][1])
+            return 1;
+    return 0;
+}
+
+/* Whether the item at `at` is such a character. */
+int labial_voice_is_blank_item(const labial_voice_t *voice, uint32_t at);
+
+/* The index of the first item that a message of characters from `begin` on replaces, `at` or the one behind it: a blank
+ * that ended the message before still ends its last word, though rounding moved it. */
+uint32_t labial_voice_behind_blank(labial_voice_t *voice, uint32_t at, uint32_t begin);
 
 /* The end of an utterance's places. */
 static inline uint32_t labial_voice_limit(const labial_voice_utterance_t *utterance)

@@ -155,10 +155,9 @@ static void enter_utterance(labial_voice_t *voice)
     }
     while (at > utterance->first) {
         const uint32_t before = labial_voice_before(voice, utterance, at);
-        const labial_voice_place_t *const item = voice->items + before;
         if (back > 0u)
             back--;
-        else if (utterance->kind == LABIAL_VOICE_CHARACTERS ? item->size == 1u && item->text[0] == ' '
+        else if (utterance->kind == LABIAL_VOICE_CHARACTERS ? labial_voice_is_blank_item(voice, before)
                                                             : !viseme_pair(voice, utterance, before, at))
             break;
         at = before;

@@ -37,32 +37,71 @@ static uint32_t last_word_lasts(labial_voice_t *voice, const labial_voice_uttera
 
 /* ---- Characters -------------------------------------------------------------------------------------------------- */
 
-/* The bytes of the character that begins a text of `left` bytes. */
-static unsigned character_bytes(const char *text, unsigned left)
+/* Characters of a word before another one of kana begins another word, where a syllable does. */
+#define KANA_MOST 4u
+
+/* Whether a character is one of Chinese, or a kanji. */
+static int is_han(uint32_t code)
 {
-    unsigned bytes = 1;
-    while (bytes < left && bytes < 4u && ((unsigned char)text[bytes] & 0xc0u) == 0x80u)
-        bytes++;
-    return bytes;
+    static const uint32_t ranges[][2] = { { 0x2e80, 0x2fdf }, { 0x3005, 0x3007 }, { 0x3400, 0x4dbf },
+                                          { 0x4e00, 0x9fff }, { 0xf900, 0xfaff }, { 0x20000, 0x3ffff } };
+    unsigned i;
+    for (i = 0; i < sizeof ranges / sizeof *ranges; i++)
+        if (code >= ranges[i][0] && code <= ranges[i][1])
+            return 1;
+    return 0;
 }
 
-/* Whether a character of so many bytes is a blank: of ASCII, or U+0085, U+00A0, U+1680, U+2000 to U+200A, U+2028,
-   U+2029, U+202F,
- * U+205F and U+3000. */
-static int is_blank_character(const char *text, unsigned bytes)
+static int is_kana(uint32_t code)
 {
-    static const uint32_t blanks[] = { 0xc285u,   0xc2a0u,   0xe19a80u, 0xe280a8u,
-                                       0xe280a9u, 0xe280afu, 0xe2819fu, 0xe38080u };
-    uint32_t code = 0;
+    return code >= 0x3041u && code <= 0x30ffu;
+}
+
+/* Whether a word of kana goes on with a character: small ones, n, marks of length, of voice and of repetition, and su,
+ * the end of desu and masu. */
+static int goes_on(uint32_t code)
+{
+    static const uint8_t small[] = { 0x41, 0x43, 0x45, 0x47, 0x49, 0x59, 0x63, 0x83, 0x85, 0x87, 0x8e, 0x93 };
+    const uint32_t plain = code > 0x30a0u ? code - 0x60u : code; /* as hiragana */
     unsigned i;
-    if (bytes == 1u)
-        return (*text >= 0x1c && *text <= ' ') || (*text >= '\t' && *text <= '\r');
-    for (i = 0; i < bytes; i++)
-        code = code << 8 | (unsigned char)text[i];
-    for (i = 0; i < sizeof blanks / sizeof *blanks; i++)
-        if (code == blanks[i])
+    for (i = 0; i < sizeof small; i++)
+        if (plain == 0x3000u + small[i])
             return 1;
-    return code >= 0xe28080u && code <= 0xe2808au;
+    return plain >= 0x3099u && plain <= 0x309fu;
+}
+
+/* Whether a script has no blanks between words: Thai and Lao, kana, Han. */
+static int is_unspaced(uint32_t code)
+{
+    return (code >= 0xe01u && code <= 0xeffu) || is_kana(code) || is_han(code);
+}
+
+/* Whether a word ends at a character, which belongs to none: a blank, or behind a script without blanks a mark of
+ * punctuation. */
+static int ends_word(const labial_voice_plan_t *plan, uint32_t code)
+{
+    return labial_voice_is_blank(code) ||
+           (plan->size > 0u && is_unspaced(plan->last) &&
+            (code == ',' || code == '.' || code == '!' || code == '?' || code == ':' || code == ';'));
+}
+
+/* Whether a character begins another word, though no blank stands before it: where a word of Japanese probably ends,
+ * before Han or katakana behind hiragana; where kana go on for long; before the vowels of Thai and Lao that are written
+ * first in their syllable; and where the word is too long. */
+static int begins_word(const labial_voice_plan_t *plan, uint32_t code)
+{
+    const uint32_t last = plan->last;
+    if (plan->characters >= LABIAL_VOICE_LETTERS)
+        return 1;
+    if (plan->size == 0u)
+        return 0;
+    if ((code & 0xffff7fu) >= 0xe40u && (code & 0xffff7fu) <= 0xe44u)
+        return 1;
+    if (!is_kana(last) || goes_on(code))
+        return 0;
+    if (last < 0x30a0u && (is_han(code) || (is_kana(code) && code > 0x30a0u)))
+        return 1;
+    return plan->characters >= KANA_MOST && is_kana(code);
 }
 
 /* Whether a bracket is closed: in this item, or in one of the next. */
@@ -93,27 +132,24 @@ static int finish_word(labial_voice_t *voice)
     /* Where there are bytes, there is a character. */
     /*@ assert characters > 0; */
     LABIAL_CHECK(characters > 0u);
-    if (plan->until != plan->ends[characters - 1u] ||
-        labial_words_push_characters(&plan->words, plan->letters, size, plan->begin, plan->ends, characters) !=
-            LABIAL_OK)
+    if (labial_words_push_characters(&plan->words, plan->letters, size, plan->begin, plan->ends, characters) !=
+        LABIAL_OK)
         (void)labial_words_push(&plan->words, plan->letters, size, plan->begin, plan->until);
     return 1;
 }
 
-/* Appends a character to the word; one that is too long ends later, and that is all. */
+/* Appends a character to the word, which has room for it. */
 static void append_character(labial_voice_plan_t *plan, const char *text, unsigned bytes, uint32_t begin, uint32_t end)
 {
     if (plan->size == 0u)
         plan->begin = plan->until = begin > plan->words.latest ? begin : plan->words.latest;
     if (end > plan->until)
         plan->until = end;
-    if (plan->size + bytes > LABIAL_VOICE_TEXT)
-        return;
+    /* Each character has four bytes at most. */
+    /*@ assert plan->characters < 60 && plan->size <= 236; */
+    LABIAL_CHECK(plan->characters < LABIAL_VOICE_LETTERS && plan->size + bytes <= 4u * LABIAL_VOICE_LETTERS);
     memcpy(plan->letters + plan->size, text, bytes);
     plan->size = (uint8_t)(plan->size + bytes);
-    /* Each character has a byte at least. */
-    /*@ assert plan->characters < 255; */
-    LABIAL_CHECK(plan->characters < LABIAL_WORDS_CHARACTERS);
     plan->ends[plan->characters++] = plan->until;
 }
 
@@ -127,23 +163,31 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
         const char *const text = labial_voice_text(voice, plan->at);
         const uint32_t length = item->end == LABIAL_VOICE_OPEN ? 0u : item->end - item->start;
         unsigned count = 0, i;
-        for (i = 0; i < item->size; i += character_bytes(text + i, item->size - i))
+        int is_read;
+        for (i = 0; i < item->size; i += labial_voice_bytes(text + i, item->size - i))
             count++;
         while (plan->byte < item->size) {
             /* The item has a byte, and so a character. */
             /*@ assert count > 0; */
             LABIAL_CHECK(count > 0u);
-            const unsigned bytes = character_bytes(text + plan->byte, item->size - plan->byte);
+            const unsigned bytes = labial_voice_bytes(text + plan->byte, item->size - plan->byte);
             const char *const character = text + plan->byte;
             const uint32_t begin = item->start + (uint32_t)((uint64_t)length * plan->point / count);
             const uint32_t end = item->start + (uint32_t)((uint64_t)length * (plan->point + 1u) / count);
+            const uint32_t code = labial_voice_code(character, bytes);
             const char closing = *character == '[' ? ']' : *character == '<' ? '>' : '\0';
             if (!plan->closing && closing && is_closed(voice, utterance, closing))
                 plan->closing = (uint8_t)closing;
+            is_read = !plan->closing && !ends_word(plan, code);
+            if (is_read && begins_word(plan, code)) {
+                (void)finish_word(voice);
+                return 1;
+            }
             plan->byte = (uint8_t)(plan->byte + bytes);
             plan->point++;
-            if (!plan->closing && !is_blank_character(character, bytes)) {
+            if (is_read) {
                 append_character(plan, character, bytes, begin, end);
+                plan->last = code;
                 continue;
             }
             if (*character == (char)plan->closing)

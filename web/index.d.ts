@@ -375,7 +375,9 @@ export class Voice<O extends Output = "faps"> {
     /** Begins the next utterance, whose sound begins at this time of the clock; by default where the one before ends, or
      * now if that is over. With the clock of an AudioContext or a MediaStream the first call says when the first
      * utterance begins; until then lips rest. A clock that was set back, as that of an element with another sound, counts
-     * from there. `utterance` is what the service calls it, if it does: messages of others that are over are dropped. */
+     * from there. `utterance` is what the service calls it, if it does: messages of others that are over are dropped.
+     * What was told before its sound begins is moved there: the utterance of this name, or without one the first that
+     * waits. */
     begin(at?: number | null, utterance?: string | null): void;
     /** The sound goes on so many seconds later than it would have, because its next piece came too late: lips wait. Only
      * for a clock that does not stop with the sound, as that of an AudioContext. */
@@ -404,8 +406,8 @@ export class Voice<O extends Output = "faps"> {
     readonly now: number | null;
     /** Frames per second. */
     readonly fps: number;
-    /** All was shown: after finish(), half a second after the last word, if there was any; after cancel(), when the face
-     * is neutral. */
+    /** All was shown: after finish(), half a second after the last word, if there was any, also where the clock stops
+     * there; after cancel(), when the face is neutral. */
     readonly done: boolean;
     /** The form of its frames. */
     readonly output: O;

@@ -28,8 +28,8 @@
  * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
  *   own sound is heard or labial_voice_begin() says when that is.
  * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
- *   its last one, less 20 ms or half of that item, as ends are rounded. Of an utterance only the items of its first
- *   kind (labial_voice_kind_t) count.
+ *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first
+ *   20 ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
  * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
  *   where the next one begins.
  *
@@ -75,6 +75,9 @@ extern "C" {
 /* Bytes of an item's text that are kept; the rest is passed over. */
 #define LABIAL_VOICE_TEXT 255u
 
+/* Characters of the longest word that characters make; what follows is another word. */
+#define LABIAL_VOICE_LETTERS 60u
+
 /* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
 #define LABIAL_VOICE_NO_END UINT64_MAX
 
@@ -102,7 +105,9 @@ typedef enum {
     LABIAL_VOICE_AZURE,     /* visemes by their names: Azure's, "0" to "21"; each lasts until the next */
     LABIAL_VOICE_POLLY,     /* and Amazon Polly's, such as "p" or "sil" */
     LABIAL_VOICE_WORDS,     /* as they are written, with their punctuation */
-    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over */
+    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over. Words end at blanks; those of scripts
+                             * without blanks at their punctuation, where a word of Japanese or a syllable of Thai
+                             * probably begins, and after four kana. */
 } labial_voice_kind_t;
 
 /* From when on the times of a message count. */
@@ -111,7 +116,7 @@ typedef enum {
     LABIAL_VOICE_CHAINED,  /* from the end of the message before */
     LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
                             * before: if it begins no later than the joined one before it and at least half of its time,
-                            * more than 20 ms, was told. A message that is told twice counts once. */
+                            * more than 20 ms, was told. Of the last 16 messages none counts twice. */
 } labial_voice_times_t;
 
 /* An item of a message. */
@@ -202,9 +207,9 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
 /*
  * The next utterance, whose sound begins when `at` milliseconds were heard, or LABIAL_VOICE_BEHIND: where the one
  * before ends, as far as is known, or now if that is over. `utterance` is its identity, 0 for that of its first
- * message; that of an utterance that began by itself moves it to `at`. 0 does the same with the last utterance if that
- * began by itself without an identity, and if nothing of it would be heard otherwise, or it was told after
- * labial_voice_finish() and is not over. After a cancel, items count again from here on.
+ * message; that of an utterance that began by itself moves it to `at`. 0 does the same with the first utterance that
+ * waits: one that began by itself behind another one, or after a cancel with LABIAL_VOICE_BEHIND, and is not over; or
+ * of which nothing would be heard otherwise. After a cancel, items count again from here on.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_RANGE or LABIAL_ERROR_FULL.
  */
@@ -234,11 +239,13 @@ int labial_voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
 int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *frame, int16_t faps[LABIAL_CHANNELS]);
 
 /*
- * The next pose on the way to the neutral face after labial_voice_cancel(), for a clock that stands with the sound: once
- * in each frame's time in which labial_voice_next() gives none. It is no frame of the sound, so that what is told for
- * the time at which the clock stands begins there.
+ * The next pose on the way to the neutral face, for a clock that stands with the sound: once in each frame's time in
+ * which labial_voice_next() gives none. The way begins at once after labial_voice_cancel(); after labial_voice_finish()
+ * where the clock stands at the end of what is known or up to 100 ms before it, once it stood for 200 ms. It is no
+ * frame of the sound, so that what is told for the time at which the clock stands begins there.
  *
- * Returns LABIAL_OK, LABIAL_DONE where there is no such way or at its end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ * Returns LABIAL_OK, LABIAL_WAITING until the clock stood for so long, LABIAL_DONE where there is no such way or at its
+ * end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
 
@@ -252,7 +259,8 @@ int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
 int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISEMES]);
 
 /* Whether nothing more will move: after labial_voice_finish(), LABIAL_VOICE_REST milliseconds after the last item, if
- * there was any; after labial_voice_cancel(), when the face is neutral. 0 for a null or uninitialised voice. */
+ * there was any, or at the end of labial_voice_ease()'s way; after labial_voice_cancel(), when the face is neutral. 0
+ * for a null or uninitialised voice. */
 int labial_voice_done(labial_voice_t *voice);
 
 /* What it was told so far; all zero for a null or uninitialised voice. */
@@ -290,7 +298,7 @@ struct labial_voice_utterance {
     uint8_t kind;      /* that counts */
     uint8_t tail;      /* places of the last item */
     uint8_t queued;    /* it began by itself: behind the one before it */
-    uint8_t early;     /* it was told after labial_voice_finish(), by a message without an identity */
+    uint8_t early;     /* it began by itself, or after a cancel: its sound was not heard of yet */
     uint8_t joined;    /* its last message was */
 };
 
@@ -319,8 +327,9 @@ struct labial_voice_plan {
     uint8_t size;       /* and its bytes */
     uint32_t time;      /* up to which words have phonemes */
     uint32_t begin, until;
-    uint32_t ends[LABIAL_WORDS_CHARACTERS];
-    char letters[LABIAL_VOICE_TEXT + 1u];
+    uint32_t last; /* of them: its number */
+    uint32_t ends[LABIAL_VOICE_LETTERS];
+    char letters[4u * LABIAL_VOICE_LETTERS];
     labial_words_t words;
 };
 
@@ -356,6 +365,8 @@ struct labial_voice {
     uint8_t streaming; /* the stream makes the frames; else the face is neutral */
     uint8_t begun;     /* `shown` holds */
     uint8_t moved;     /* the stream made a frame */
+    uint8_t still;     /* frames' times since the last one, before the face eases to rest; */
+    uint8_t eased;     /* it does or did since then */
     uint8_t given_phoneme;
     int16_t shown[LABIAL_CHANNELS], made[LABIAL_CHANNELS];
     int32_t fade[LABIAL_CHANNELS]; /* is added to the stream's frames, less with each step */

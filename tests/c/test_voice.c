@@ -265,7 +265,7 @@ TEST_AFTER(begin, characters_are_words_between_blanks)
     plan_from = 640;
     assert_string_equal(known(), strstr(first, "650"));
     plan_from = 0;
-    tell_one("\xe2\x80\x94", 740, 760); /* no blank */
+    tell_one("\xe2\x80\x93", 740, 760); /* no blank */
     tell_one("\n", 760, 770);
     tell_one("\xc3\xa9", 770, 775);
     tell_one("\x0e", 775, 777);                     /* no blank */
@@ -318,6 +318,116 @@ TEST_AFTER(begin, characters_that_overlap_and_long_words)
     assert_non_null(strstr(said, "-15000 "));
 }
 
+/* The characters of a text of UTF-8, 50 ms each. */
+static void letters(const char *text, int64_t start)
+{
+    static char found[PLACES][5];
+    for (unsigned i = 0; *text; i++, text += labial_voice_bytes(text, 5)) {
+        memset(found[i], 0, sizeof found[i]);
+        memcpy(found[i], text, labial_voice_bytes(text, 5));
+        item(found[i], start + 50 * i, start + 50 * (i + 1));
+    }
+}
+
+TEST_AFTER(begin, a_blank_that_ends_a_message_still_ends_its_word)
+{
+    static const struct {
+        int start, end; /* of the blank */
+        int next;       /* the beginning of the next message */
+        int is_kept;
+    } cases[] = { { 300, 300, 300, 1 }, { 301, 301, 300, 1 }, { 299, 301, 300, 1 }, { 301, 320, 300, 1 },
+                  { 300, -1, 300, 1 },  { 300, 330, 300, 0 }, { 300, 330, 330, 1 } };
+    char apart[500];
+    for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
+        begin_with(PLACES);
+        message.kind = LABIAL_VOICE_CHARACTERS;
+        for (unsigned k = 0; k < 2; k++) {
+            item("Bob", 0, 300);
+            item(" ", cases[i].start, cases[i].end);
+            assert_int_equal(tell(), LABIAL_OK);
+        }
+        for (unsigned k = 0; k < 3; k++) { /* nothing grows */
+            item("may", cases[i].next, cases[i].next + 300);
+            assert_int_equal(tell(), LABIAL_OK);
+            assert_in_range(voice.utterances[0].places, 2, 3);
+        }
+        strcpy(apart, known());
+        begin_with(PLACES);
+        message.kind = LABIAL_VOICE_CHARACTERS;
+        item(cases[i].is_kept ? "Bob " : "Bob", 0, cases[i].is_kept ? 400 : 300);
+        item("may", cases[i].next, cases[i].next + 300);
+        items[0].end = 300 * MS;
+        if (cases[i].is_kept) {
+            items[0].text = "Bob";
+            items[0].size = 3;
+            item(" ", 300, 300);
+            labial_voice_item_t last = items[2];
+            items[2] = items[1];
+            items[1] = last;
+        }
+        assert_int_equal(tell(), LABIAL_OK);
+        assert_string_equal(known(), apart);
+    }
+}
+
+static char noted[2000];
+
+static const labial_words_own_t *note(void *user, const char *text, size_t size)
+{
+    char *const words = (char *)user;
+    memcpy(words + strlen(words), text, size); /* behind it are zeros */
+    words[strlen(words)] = '|';
+    return NULL;
+}
+
+/* The words that the characters of a text are. */
+static const char *words_in(const char *text)
+{
+    begin_with(PLACES);
+    memset(noted, 0, sizeof noted);
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    letters(text, 0);
+    assert_int_equal(labial_voice_pronounce(&voice, note, noted), LABIAL_OK);
+    assert_int_equal(tell(), LABIAL_OK);
+    known();
+    return noted;
+}
+
+TEST(words_of_scripts_without_blanks)
+{
+    char text[301];
+    assert_string_equal(words_in("妈妈爸爸，朋友们……好——吗？「是」。"), "妈妈爸爸|朋友们|好|吗|是|");
+    assert_string_equal(words_in("你好,世界.再见!好吗?是:的;A,B.豈!"), "你好|世界|再见|好吗|是|的|A,B.豈|");
+    assert_string_equal(words_in(",你 .好𠀀!⼀.⺀?々,㐀;"), ",你|.好𠀀|⼀|⺀|々|㐀|");
+    assert_string_equal(words_in("今日は新聞を読みました。"), "今日は|新聞を|読みまし|た|");
+    assert_string_equal(words_in("Tシャツとバスに乗り、コンピューターをつかって、しゃっきんばなしだ"),
+                        "Tシャツ|と|バスに|乗り|コンピュー|ターをつ|かって|しゃっきん|ばなしだ|");
+    assert_string_equal(words_in("はA あいうえB"), "はA|あいうえB|");
+    assert_string_equal(words_in("ぱはぱんをたべます"), "ぱはぱん|をたべます|");
+    assert_string_equal(words_in("すごーいね・ァかヽかか゛か"), "すごーい|ね|ァかヽか|か゛か|");
+    assert_string_equal(words_in("แม่และพ่อไปซื้อปลา, ດີເດັກ!ก"), "แม่|และพ่อ|ไปซื้อปลา|ດີ|ເດັກ|ก|");
+    assert_string_equal(words_in("वह घर,गया 엄마와!아빠"), "वह|घर,गया|엄마와!아빠|");
+    assert_string_equal(words_in("[妈妈]爸,[b"), "爸|[b|");
+    memset(text, 'o', 300);
+    text[300] = '\0';
+    words_in(text);
+    assert_int_equal(strlen(noted), 305);
+    assert_int_equal(strcspn(noted, "|"), LABIAL_VOICE_LETTERS);
+}
+
+TEST_AFTER(begin, long_texts_without_blanks_are_forgotten)
+{
+    message.kind = LABIAL_VOICE_CHARACTERS;
+    for (unsigned i = 0; i < 40; i++) {
+        letters("妈妈爸爸跑步，朋友。", 500 * (int)i);
+        assert_int_equal(tell(), LABIAL_OK);
+        play(500 * (uint64_t)i);
+    }
+    assert_in_range(voice.utterances[0].places, 50, 150);
+    plan_from = 19000;
+    assert_true(atol(known()) >= plan_from);
+}
+
 TEST_AFTER(begin, a_tag_is_looked_for_in_a_hundred_characters)
 {
     message.kind = LABIAL_VOICE_CHARACTERS;
@@ -329,7 +439,7 @@ TEST_AFTER(begin, a_tag_is_looked_for_in_a_hundred_characters)
     item("no", 1240, 1400);
     assert_int_equal(tell(), LABIAL_OK);
     assert_true(strncmp(known(), "73-", 3) == 0); /* it has no end that is near enough */
-    tell_one("]", 1180, 1190);
+    tell_one("]", 1170, 1195);
     assert_true(strncmp(known(), "1200-", 5) == 0);
 }
 
@@ -427,7 +537,7 @@ TEST_AFTER(begin, what_is_heard_is_not_moved)
     message.utterance = name("a");
     tell_one("AA", 500, 1700); /* late: it is cut where the next one began */
     assert_string_equal(known(), "0-500 M, 500-1400 S");
-    assert_int_equal(labial_voice_begin(&voice, 2000, 0), LABIAL_OK); /* told by the caller: it is not moved, either */
+    assert_int_equal(labial_voice_begin(&voice, 2000, name("c")), LABIAL_OK); /* nor what the caller tells */
     message.utterance = name("b");
     tell_one("AA", 900, 2700);
     assert_string_equal(known(), "0-500 M, 500-1400 S, 1400-2000 AA");
@@ -470,6 +580,68 @@ TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
     tell_one("S", 0, 500);
     assert_string_equal(known(), "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
                                  "5200-5300 F, 6000-6500 M, 7000-7500 S");
+}
+
+/* A service that names its answers, and a client that does not know the names: each sound is that of the first answer
+ * that waits. */
+TEST_AFTER(begin, named_utterances_that_are_told_before_they_begin)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 500);
+    message.utterance = name("b");
+    tell_one("S", 0, 500);
+    message.utterance = name("c");
+    tell_one("F", 0, 500);
+    assert_string_equal(known(), "0-500 M, 500-1000 S, 1000-1500 F");
+    assert_int_equal(labial_voice_begin(&voice, 0, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 500-1000 S, 1000-1500 F");
+    play(800); /* the second one's sound is late */
+    assert_int_equal(labial_voice_begin(&voice, 900, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1900 F");
+    message.utterance = name("b");
+    tell_one("AA", 500, 700);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 1600-2100 F");
+    play(2000);
+    assert_int_equal(labial_voice_begin(&voice, 2200, 0), LABIAL_OK);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F");
+    assert_int_equal(labial_voice_begin(&voice, 2900, 0), LABIAL_OK); /* nothing waits */
+    message.utterance = name("d");
+    tell_one("S", 0, 500);
+    message.utterance = name("e");
+    tell_one("M", 0, 500);
+    assert_string_equal(known(), "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F, 2900-3400 S, 3400-3900 M");
+    play(6000);
+    assert_int_equal(labial_voice_begin(&voice, 6000, 0), LABIAL_OK); /* it is over */
+    message.utterance = name("f");
+    tell_one("S", 0, 500);
+    assert_string_equal(known(), "2900-3400 S, 3400-3900 M, 6000-6500 S");
+}
+
+/* Both seem to be heard by now, but the sound of the first one begins later. */
+TEST_AFTER(begin, what_waits_behind_an_utterance_that_is_late_waits_longer)
+{
+    message.utterance = name("a");
+    tell_one("M", 0, 100);
+    message.utterance = name("b");
+    tell_one("S", 0, 530);
+    message.utterance = name("c");
+    tell_one("F", 0, 500);
+    play(620);
+    assert_int_equal(labial_voice_begin(&voice, 640, name("b")), LABIAL_OK);
+    assert_string_equal(known(), "0-100 M, 640-1170 S, 1170-1670 F");
+}
+
+TEST_AFTER(begin, what_begins_at_once_after_a_cancel_may_be_told_its_sound)
+{
+    tell_one("M", 0, 500);
+    play(100);
+    assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    message.utterance = name("b");
+    tell_one("S", 0, 500);
+    assert_int_equal(labial_voice_begin(&voice, 400, 0), LABIAL_OK);
+    tell_one("AA", 500, 600);
+    assert_string_equal(known(), "400-900 S, 900-1000 AA");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)
@@ -521,7 +693,7 @@ TEST_AFTER(begin, utterances_that_were_not_told_of_yet)
     assert_string_equal(known(), "0-500 M, 600-700 S, 1600-1700 S, 1700-2000 F, 2600-2700 S");
     assert_int_equal(labial_voice_cancel(&voice, 100), LABIAL_OK);
     assert_int_equal(voice.used, 0);
-    assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_OK);
+    assert_int_equal(labial_voice_begin(&voice, 0, 0), LABIAL_OK);
     message.utterance = 0;
     tell_one("M", 0, 100);
     assert_string_equal(known(), "0-100 M");
@@ -681,7 +853,7 @@ TEST_AFTER(begin, there_are_only_so_many_utterances)
     message.utterance = name(text);
     item("M", 0, 100);
     assert_int_equal(tell(), LABIAL_ERROR_FULL);
-    assert_int_equal(labial_voice_begin(&voice, 5, 0), LABIAL_ERROR_FULL);
+    assert_int_equal(labial_voice_begin(&voice, 5, name("0")), LABIAL_ERROR_FULL);
     assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_ERROR_FULL);
     assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
     message.utterance = 0;
@@ -1122,6 +1294,62 @@ TEST_AFTER(begin_frames, a_face_eases_while_the_clock_stands)
     want(920);
     show_until(2200);
     assert_memory_equal(shown[60], wanted[60], 51 * sizeof *shown);
+}
+
+/* A clock that is the sound stops at its end: behind labial_voice_finish() the face comes to rest all the same. */
+TEST_AFTER(begin_frames, a_face_comes_to_rest_at_the_end_while_the_clock_stands)
+{
+    static uint32_t before[sizeof memory / sizeof *memory];
+    int16_t faps[LABIAL_CHANNELS];
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* nothing was shown, */
+    show_until(20);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* or is known */
+    voice.finished = 0;
+    assert_int_equal(labial_voice_phoneme(&voice, SPEECH_EN_AA, 100, 1000), LABIAL_OK);
+    show_until(780);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* the player waits for sound */
+    show_until(900);
+    for (unsigned i = 0; i < 8; i++) { /* a clock of large steps */
+        assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_WAITING);
+    }
+    show_until(940);
+    for (unsigned i = 0; i < 25; i++) {
+        assert_int_equal(labial_voice_done(&voice), 0);
+        assert_int_equal(labial_voice_next(&voice, 940, NULL, faps), LABIAL_WAITING);
+        assert_int_equal(labial_voice_ease(&voice, faps), i < 10 ? LABIAL_WAITING : LABIAL_OK);
+    }
+    assert_memory_equal(faps, rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    memcpy(before, memory, sizeof memory);
+    labial_voice_t twin = voice;
+    assert_int_equal(labial_voice_begin(&voice, 1400, 0), LABIAL_OK); /* the next answer waits for its sound */
+    assert_int_equal(labial_voice_done(&voice), 0);
+    tell_sentence(0, SENTENCE);
+    want(1400);
+    show_until(2580);
+    assert_memory_equal(shown[80], wanted[80], 50 * sizeof *shown);
+    frame_count = 48;
+    memcpy(memory, before, sizeof memory);
+    voice = twin; /* or the clock goes on, */
+    show_until(1600);
+    assert_memory_equal(shown[80], rest, sizeof rest);
+    assert_int_equal(labial_voice_done(&voice), 1);
+    frame_count = 48;
+    memcpy(memory, before, sizeof memory);
+    voice = twin; /* or more was told of what ended */
+    assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
+    voice.utterances[0].identity = 7;
+    labial_voice_item_t more = { 1000 * MS, 1500 * MS, NULL, 0, SPEECH_EN_IY };
+    labial_voice_message_t late = { &more, 1, 7, 0, 0, LABIAL_VOICE_PHONEMES, LABIAL_VOICE_ABSOLUTE };
+    assert_int_equal(labial_voice_tell(&voice, &late), LABIAL_OK);
+    assert_int_equal(labial_voice_done(&voice), 0);
+    assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
+    show_until(1200);
+    assert_memory_not_equal(shown[60], rest, sizeof rest);
 }
 
 TEST_AFTER(begin_frames, an_end_right_after_a_cancel_waits_for_the_face)

@@ -262,6 +262,33 @@ test("a mouth closes although the clock stands, also if the next answer has begu
     }
 });
 
+test("a mouth closes at the end although the clock stops with the sound, and the voice has ended", async (context) => {
+    context.mock.timers.enable({ apis: ["Date"], now: 1e6 });
+    for (const call of ["at", "played"]) {
+        let ended = 0;
+        const voice = await told({});
+        voice.addEventListener("ended", () => ended++);
+        voice.finish();
+        for (let time = 0; time < 0.81; time += 0.02) voice[call](time);
+        context.mock.timers.tick(5000);
+        assert.deepEqual([voice.played(0.8), voice.done], [[], false], "it waits for sound");
+        for (let time = 0.82; time < 1.25; time += 0.02) voice[call](time);
+        const stands = rows([voice.at(1.24)])[0];
+        const poses = [];
+        for (let i = 0; i < 60; i++) {
+            context.mock.timers.tick(10);
+            if (call === "at") poses.push(rows([voice.at(1.24)])[0]);
+            else poses.push(...rows(voice.played(1.24)));
+            assert.deepEqual([voice.done, ended], i < 49 ? [false, 0] : [true, 1]);
+        }
+        if (call === "at") assert.deepEqual(poses[19], stands);
+        else assert.equal(poses.length, 15);
+        assert.notDeepEqual(poses[call === "at" ? 25 : 0], stands);
+        assert.deepEqual([...new Set(poses.at(-1))], [0]);
+        assert.ok(Math.abs(voice.time - 1.24) < 0.001);
+    }
+});
+
 test("following yields every frame once, in time, and ends", async () => {
     const begin = performance.now();
     const clock = () => (performance.now() - begin < 60 ? null : (performance.now() - begin - 60) / 200);

@@ -91,6 +91,30 @@ test("characters of a word move its phonemes", () => {
     assert.deepEqual(words.wordTimings([{ text: "my", start: 3, end: 3.3, ends: [3.3] }]), words.wordTimings([{ text: "my", start: 3, end: 3.3 }]));
 });
 
+/** The words of test_words_runtime.py, as "fi" of the caller's own say where each begins. */
+test("words of scripts without blanks end at punctuation, and where one probably begins", () => {
+    for (const text of ["妈妈爸爸|，朋友们|……好|——吗|？「是|」。", "你好|,世界|.再见|!好吗|?是|:的|;A,B", "今日は|新聞を|読みまし|た|。",
+        "コンピュー|ターをつ|かってしゃっ|きんです", "すごーい|ね|・ァかヽか|か゛か", "แม่|และพ่อ|ไปซื้อปลา|, ດີ|ເດັກ|!ก", "वह| घर,गया| 엄마와!아빠",
+        `${"o".repeat(60)}|${"o".repeat(60)}|oooooooooo`]) {
+        const parts = text.split("|");
+        const said = parts.map((part) => part.replace(/^[^\p{L}]+|[^\p{L}\p{M}]+$/gu, "")).filter(Boolean);
+        const own = Object.fromEntries(said.map((word) => [word, "F IY"]));
+        const sounds = said.flatMap(() => ["F", "IY"]);
+        assert.deepEqual(words.phonemes(text.replaceAll("|", ""), { own }), sounds, text);
+        const characters = [...text.replaceAll("|", "")];
+        const times = characters.map((_, i) => i + (i % 3) / 10);
+        const found = words.characterTimings(characters, times, [...times.slice(1), characters.length], { own });
+        const begins = [];
+        let place = 0;
+        for (const part of parts) {
+            const first = [...part].findIndex((one) => /\p{L}/u.test(one));
+            if (first >= 0) begins.push(times[place + first]);
+            place += [...part].length;
+        }
+        assert.deepEqual(found.filter(({ label }) => label === "F").map(({ start }) => start), begins, text);
+    }
+});
+
 test("messages are read as they arrive", () => {
     const spelt = (text, from) => ({ chars: [...text], charStartTimesMs: [...text].map((_, i) => from + 100 * i), charDurationsMs: [...text].map(() => 100) });
     const messages = [{ audio: "AAAA", alignment: null }, { alignment: spelt("Hi y", 0) }, '{"isFinal": null}', { alignment: spelt("ou", 0) }];

@@ -82,6 +82,11 @@ void labial_voice_insert(labial_voice_t *any, labial_voice_utterance_t *utteranc
         utterance->tail = (uint8_t)of[item->size - 1u];
 }
 
+uint32_t labial_voice_behind_blank(labial_voice_t *any, uint32_t at, uint32_t begin)
+{
+    return any->used + at + begin;
+}
+
 uint32_t labial_voice_told(const labial_voice_t *any, const labial_voice_utterance_t *utterance, uint32_t from,
                            uint32_t to)
 {

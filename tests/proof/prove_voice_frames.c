@@ -85,6 +85,16 @@ int labial_voice_plan_sounds(labial_voice_t *any)
     return any_int;
 }
 
+int64_t labial_voice_latest(labial_voice_t *any)
+{
+    return any->begun ? (int64_t)any_uint32 * 8 : -1;
+}
+
+unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
+{
+    return milliseconds < frames_per_second ? 1u : (unsigned)Frama_C_interval(1, LABIAL_CANCEL_MAX);
+}
+
 void labial_voice_forget(labial_voice_t *any, int64_t moment)
 {
     any->stale = moment > 0 || any_int;
@@ -114,6 +124,10 @@ static void any_state(void)
     voice.stale = any_uint8;
     voice.streaming = any_uint8;
     voice.begun = any_uint8;
+    voice.finished = any_uint8;
+    voice.still = any_uint8;
+    voice.eased = any_uint8;
+    voice.offset = any_int32;
     FILL(voice.shown);
     FILL(voice.made);
     for (k = 0; k < LABIAL_CHANNELS; k++)

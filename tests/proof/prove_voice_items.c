@@ -168,7 +168,7 @@ int main(void)
     voice.numbers = OR_NULL(uint8_t *, numbers);
     voice.speak = speak;
     voice.lasts = lasts;
-    switch (Frama_C_interval_split(0, 12)) {
+    switch (Frama_C_interval_split(0, 13)) {
     case 0:
         labial_voice_find(&voice, utterance, any_uint32);
         break;
@@ -209,6 +209,10 @@ int main(void)
         break;
     case 11:
         labial_voice_plan_sounds(&voice);
+        break;
+    case 12:
+        if (utterance->places > 0u)
+            labial_voice_behind_blank(&voice, utterance->first, any_uint32);
         break;
     default:
         labial_voice_plan_start(&voice, any_moment());

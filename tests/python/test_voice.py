@@ -9,6 +9,7 @@ import asyncio
 import json
 import math
 import random
+import shutil
 import subprocess
 import sys
 import time
@@ -144,6 +145,72 @@ def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
         assert voice.done is not begins and voice.cancelled is not begins
         other.push("IY", 1.1, 1.6)
         assert not begins or played(voice, 0.62, 1.6)[-30:] == played(other, 0, 1.6)[-30:]
+
+
+def test_a_face_comes_to_rest_at_the_end_while_the_clock_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock that is the sound stops with it: then time passes behind :meth:`finish`, once the clock stood a while."""
+    passed = 100.0
+    monkeypatch.setattr("labial.runtime.voice.time.monotonic", lambda: passed)
+    with labial.Voice() as voice:
+        voice.push("AA", 0.0, 1.0)
+        voice.finish()
+        played(voice, 0, 0.8)
+        passed += 5.0
+        assert voice.played(0.8) == [] and not voice.done  # a player that waits for sound
+        stands = played(voice, 0.82, 0.96)[-1]
+        shown: List[Tuple[int, ...]] = []
+        for _ in range(60):
+            passed += 0.01
+            shown += [frame.faps for frame in voice.played(0.96)]
+            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.215)
+        assert shown[0] != stands and shown[-1] == (0,) * 13
+        assert voice.time == 0.98
+
+
+def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
+    async def run(voice: labial.Voice) -> List[labial.Frame]:
+        begin = time.monotonic()
+        return [frame async for frame in voice.follow(lambda: min(time.monotonic() - begin, 0.3))]
+
+    with labial.Voice() as voice:
+        voice.push("AA", 0.0, 0.3)
+        voice.finish()
+        frames = asyncio.run(asyncio.wait_for(run(voice), 20))
+        assert frames[-1].faps == (0,) * 13 and frames[-1].number == 15
+
+
+@pytest.mark.skipif(not shutil.which("espeak-ng"), reason="no espeak-ng: install the Debian package")
+@pytest.mark.parametrize("language, text, closed", [
+    ("cmn", "妈妈爸爸明天不跑步，朋友们买苹果和面包。", "妈爸明不跑步朋们买苹面包"),
+    ("ja", "ままとぱぱはぱんをたべます。ばなながすきです。", "まぱばべ")])
+@pytest.mark.parametrize("size", [7, 10_000])
+def test_lips_close_in_long_texts_without_blanks(language: str, text: str, closed: str, size: int) -> None:
+    """With each p, b, m, and between words; as :func:`labial.read_timings` has them, in messages of any length."""
+    rng, moment = random.Random(1), 0.1
+    times: List[Tuple[str, float, float]] = []
+    for character in text * 10:
+        length = 0.4 if character in "，。" else round(rng.uniform(0.12, 0.25), 3)
+        times.append((character, moment, moment + length))
+        moment += length
+    messages = []
+    for first in range(0, len(times), size):
+        part = times[first : first + size]
+        messages.append({"alignment": {
+            "chars": [character for character, _, _ in part],
+            "charStartTimesMs": [1000 * start for _, start, _ in part],
+            "charDurationsMs": [1000 * (end - start) for _, start, end in part]}})
+    with labial.Voice("elevenlabs", language=language) as voice:
+        for message in messages:
+            voice.feed(message)
+        frames = played(voice, 0, moment)
+    timings = labial.read_timings(messages, source="elevenlabs", language=language)
+    assert frames == motion(timings, len(frames))
+    opening = [-(faps[3] + faps[4]) for faps in frames]
+    for character, start, end in times:
+        shown = opening[math.ceil(50 * (start - 0.06)) : math.floor(50 * (start + 0.12))]
+        assert character not in closed or min(shown) < 60, (character, start)
+        pause = opening[math.ceil(50 * (start + 0.16)) : math.floor(50 * (end - 0.12))]
+        assert character not in "，。" or max(pause) < 120, start
 
 
 def test_done() -> None:

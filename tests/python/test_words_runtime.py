@@ -130,6 +130,54 @@ def test_characters_become_words() -> None:
     assert total(long) == 900
 
 
+#: Texts of scripts without blanks, and their words: where they end, and where one of Japanese or a syllable of Thai
+#: probably begins. tests/c/test_voice.c and tests/npm/words.test.mjs have some of them as well.
+UNSPACED = [
+    ("妈妈爸爸，朋友们……好——吗？「是」。", "妈妈爸爸|朋友们|好|吗|是"),
+    ("你好,世界.再见!好吗?是:的;A,B", "你好|世界|再见|好吗|是|的|A,B"),
+    ("今日は新聞を読みました。", "今日は|新聞を|読みまし|た"),
+    ("コンピューターをつかってしゃっきんです", "コンピュー|ターをつ|かってしゃっ|きんです"),
+    ("すごーいね・ァかヽかか゛か", "すごーい|ね|ァかヽか|か゛か"),
+    ("แม่และพ่อไปซื้อปลา, ດີເດັກ!ก", "แม่|และพ่อ|ไปซื้อปลา|ດີ|ເດັກ|ก"),
+    ("वह घर,गया 엄마와!아빠", "वह|घर,गया|엄마와!아빠"), ("o" * 130, f"{'o' * 60}|{'o' * 60}|{'o' * 10}"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("text, words", UNSPACED)
+def test_words_of_scripts_without_blanks(text: str, words: str) -> None:
+    """Each with its own characters' times; a text without times has the same words."""
+    found = words_of_characters(list(text), list(range(len(text))), list(range(1, len(text) + 1)))
+    assert "|".join(word.text for word in found) == words == "|".join(filter(None, spoken.words_of(text)))
+    for word in found:
+        assert text[word.start : word.end] == word.text and word.ends == tuple(range(word.start + 1, word.end + 1))
+
+
+def test_each_character_of_chinese_is_a_word() -> None:
+    """For a voice as well, which gets blanks between them."""
+    times = ([0, 100, 300, 400, 500], [100, 300, 400, 500, 600])
+    for language in ("cmn", "zh-TW", "yue", "zh-HK"):
+        found = words_of_characters(["我", "用PY", "写", "，", "吧"], *times, language=language)
+        assert [(word.text, word.start, word.end) for word in found] == [
+            ("我", 0, 100), ("用", 100, 166), ("PY", 166, 300), ("写", 300, 400), ("吧", 500, 600)]  # fmt: skip
+    assert [word.text for word in words_of_characters(["我", "用PY", "写", "，", "吧"], *times, language="ja")] == [
+        "我用PY写", "吧"]  # fmt: skip
+    assert spoken.characters_apart([("我们", 1.0, 2.0), ("P", 2.0, None)]) == [
+        (" ", 1.0, 1.0), ("我", 1.0, 1.5), (" ", 1.5, 1.5), ("们", 1.5, 2.0), (" ", 2.0, 2.0),
+        ("P", 2.0, 2.0)]  # fmt: skip
+
+
+@needs_espeak
+def test_long_texts_are_not_cut(caplog: pytest.LogCaptureFixture) -> None:
+    """A word of the library's has 96 phonemes at most: it says where words of others have more."""
+    for text, language in (("妈妈爸爸明天不跑步，朋友们买苹果和面包。", "cmn"), ("ままとぱぱはぱんをたべます。", "ja")):
+        one = labial.phonemes(text, language=language)
+        assert labial.phonemes(text * 20, language=language) == one * 20
+    assert not caplog.records
+    timings = labial.word_timings([("妈" * 60, 0, 9000)], language="cmn")
+    assert len(timings) == 96
+    assert [message[40:] for message in caplog.messages] == [" has 120 phonemes: the lips move for the first 96"]
+
+
 def test_any_text_is_read() -> None:
     """Half surrogates, NUL and characters of every plane."""
     timings = labial.word_timings([("\ud800", 0, 100), ("a\0b", 100, 200), ("\U0010ffff", 200, 300), ("", 300, 400)])
@@ -175,9 +223,32 @@ def test_there_are_ten_languages_and_more() -> None:
 
 
 @needs_espeak
+def test_the_n_of_japanese() -> None:
+    """Before p, b and m lips close; before vowels, w, y and h they do not round."""
+    for word, phonemes in (("がんばる", "G AE M B AE L UH"), ("えんぴつ", "EH M P IY S UH"), ("さんま", "S AE M M AE"),
+                           ("ほんや", "HH OW NG Y AE"), ("でんわ", "D EH NG W AE"), ("パン", "P AE NG")):
+        assert labial.phonemes(word, language="ja") == phonemes.split()
+
+
+@needs_espeak
+def test_numbers_of_chinese() -> None:
+    """As numbers; years, long ones and those that begin with 0 digit by digit. Tones of pinyin are not said."""
+    for digits, spoken_so in {
+            "0": "零", "5": "五", "10": "十", "15": "十五", "20": "二十", "105": "一百零五", "110": "一百一十",
+            "1005": "一千零五", "1984": "一九八四", "2024": "二零二四", "2100": "二千一百", "10000": "一万",
+            "10050": "一万零五十", "105000": "十万五千",
+            "1234567": "一百二十三万四千五百六十七", "100000001": "一亿零一",
+            "1000000000000": "一万亿", "007": "零零七", "3.14": "三点一四", "１２": "十二",
+            "12345678901234567": "一二三四五六七八九零一二三四五六七"}.items():  # fmt: skip
+        assert labial.phonemes(digits, language="cmn") == labial.phonemes(spoken_so, language="cmn"), digits
+    assert labial.phonemes("第3", language="cmn") == labial.phonemes("第三", language="cmn")
+    assert labial.phonemes("ni3hao3", language="cmn") == "N IY HH AW".split()
+
+
+@needs_espeak
 def test_kanji_become_kana(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
     """By fugashi, for which a stand-in has what it says; without it kana alone are spoken, and kanji alone logged."""
-    said = {"私は話します": ("ワタクシ", "ワ", "ハナシ", "マス")}
+    said = {"私は": ("ワタクシ", "ワ"), "話します": ("ハナシ", "マス")}
 
     def tagger(text: str) -> List[SimpleNamespace]:
         return [SimpleNamespace(surface="", feature=SimpleNamespace(pron=kana, kana=kana)) for kana in said[text]]

@@ -14,7 +14,7 @@ import sys
 import zlib
 from array import array
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Set, Tuple
 
 import numpy as np
 
@@ -75,6 +75,7 @@ class Oracle:
     def __init__(self, options: Dict[str, Any]) -> None:
         self.options = options
         self.utterances: List[Dict[str, Any]] = [_utterance(0, True)]
+        self.gone: Set[Optional[str]] = set()  # names of what was cancelled
         self.finished = self.cancelled = False
         self.neutral, self.epoch, self.plan = False, -1, []  # the stream: since when, of what
         self.next, self.shown = 0, None
@@ -93,8 +94,23 @@ class Oracle:
     # ---- What is told
 
     def feed(self, message: Any) -> None:
-        if self.listens():
-            self.utterances[-1]["messages"].append(message)
+        name = message.get("context_id")
+        if self.cancelled:
+            self.gone.add(name)
+        elif name is None or name not in self.gone:
+            self.named(name)["messages"].append(message)
+            self.requeue(self.next * 20)
+
+    def named(self, name: Optional[str]) -> Dict[str, Any]:
+        """The utterance of a name, which may be a new one; that of no name is the last one."""
+        for one in self.utterances:
+            if name and one["name"] == name:
+                return one
+        if self.finished or (name and self.utterances[-1]["name"]):
+            self.begin()
+            self.utterances[-1]["early"] = True
+        self.utterances[-1]["name"] = name or self.utterances[-1]["name"]
+        return self.utterances[-1]
 
     def say(self, text: str, start: float, end: Optional[float] = None) -> None:
         if self.listens():
@@ -105,34 +121,44 @@ class Oracle:
             self.insert("phonemes", phoneme, _ms(start), _ms(end))
 
     def begin(self, at: Optional[float] = None) -> None:
-        if at is not None and self.told_before(_ms(at)):
-            self.utterances[-1].update(origin=_ms(at), queued=False, early=False)
+        waiting = [] if at is None else [one for one in self.utterances if self.waits(one, _ms(at))]
+        if waiting:
+            waiting[0].update(origin=_ms(at or 0), queued=False, early=False)
+            self.requeue(-1)
             return
         start = max(self.ends()[-1] if self.utterances else 0, self.next * 20) if at is None else _ms(at)
         gives_way = self.utterances and not self.utterances[-1]["queued"] and not self.spoken(self.utterances[-1])
         self.utterances.append(_utterance(start, at is None and not gives_way))
+        self.utterances[-1]["early"] = at is None and self.cancelled
         self.finished = self.cancelled = False
 
-    def told_before(self, at: int) -> bool:
-        """Whether the last utterance was told before its sound: behind an end and not over, or not to be heard."""
-        if not self.utterances or not self.utterances[-1]["queued"] or not self.spoken(self.utterances[-1]):
+    def waits(self, one: Dict[str, Any], at: int) -> bool:
+        """Whether an utterance was told before its sound: it began by itself and is not over, or is not to be heard."""
+        number = self.utterances.index(one)
+        is_cut = any(other["origin"] <= one["origin"] for other in self.utterances[number + 1 :])
+        if not one["queued"] or not self.spoken(one) or is_cut:
             return False
-        is_early = self.utterances[-1]["early"] and self.ends()[-1] > self.next * 20
-        return is_early or at <= self.utterances[-1]["origin"]
+        return at <= one["origin"] or (one["early"] and self.ends()[number] > self.next * 20)
+
+    def requeue(self, moment: int) -> None:
+        """Moves what is queued and begins after a moment behind what was told more of."""
+        for number, one in enumerate(self.utterances[1:]):
+            if one["queued"] and one["origin"] > moment:
+                one["origin"] = max(one["origin"], self.ends()[number])
 
     def finish(self) -> None:
         self.finished = True
 
     def cancel(self, milliseconds: float) -> None:
+        self.gone |= {one["name"] for one in self.utterances}
         self.utterances, self.cancelled, self.finished = [], True, False
         self.neutral = True
         frames = max(1, math.ceil(milliseconds / 20 - 1e-6))
         self.fade = (self.shown or (0,) * 13, 0, frames, frames)
 
     def listens(self) -> bool:
-        if self.finished and not self.cancelled:
-            self.begin()
-            self.utterances[-1]["early"] = True
+        if not self.cancelled:
+            self.named(None)
         return not self.cancelled
 
     def insert(self, kind: str, text: str, start: int, end: Optional[int]) -> None:
@@ -149,7 +175,8 @@ class Oracle:
         """Phonemes of an utterance with their times in it."""
         if utterance["messages"]:
             try:
-                timings = labial.read_timings(utterance["messages"], source=self.options.get("format"))
+                timings = labial.read_timings(utterance["messages"], source=self.options.get("format"),
+                                              own=self.options.get("own"))
             except labial.errors.DataError as error:  # so far they tell nothing
                 assert "times nothing here" in str(error)
                 timings = []
@@ -239,7 +266,8 @@ class Oracle:
 
 
 def _utterance(origin: int, queued: bool) -> Dict[str, Any]:
-    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": [], "queued": queued, "early": False}
+    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": [], "queued": queued, "early": False,
+            "name": None}
 
 
 def _ms(seconds: float) -> int:

@@ -78,6 +78,26 @@ def _split_word() -> List[List[Any]]:
             message("ly] hum.", 1360), _plays(0.42, 1.6), message(" By the", 0), _plays(1.62, 3)]
 
 
+def _characters(*pieces: str) -> List[List[Any]]:
+    """The same of 150 ms each, and of 300 ms for punctuation; a message ends where a blank of no length does."""
+    steps, start = [], 100
+    for text in pieces:
+        lengths = [0 if character == " " else 300 if character in "、。，！" else 150 - 20 * (k % 3)
+                   for k, character in enumerate(text)]
+        starts = [start + sum(lengths[:k]) for k in range(len(text))]
+        steps.append(["feed", {"alignment": {"chars": list(text), "charStartTimesMs": starts,
+                                             "charDurationsMs": lengths}}])
+        start += sum(lengths)
+    return steps
+
+
+def _answer(name: str, *words: Tuple[str, float, float]) -> List[Any]:
+    """A message of Cartesia."""
+    texts, starts, ends = zip(*words)
+    stamps = {"words": list(texts), "start": list(starts), "end": list(ends)}
+    return ["feed", {"type": "timestamps", "context_id": name, "word_timestamps": stamps}]
+
+
 def _long() -> List[List[Any]]:
     """Twelve seconds of phonemes, and then one that was not known in time."""
     calls = [["push", label, round(start + 1.5 * k, 3), round(end + 1.5 * k, 3)]
@@ -134,6 +154,24 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
     "Hume's words, then their phonemes": {"words": True, "options": {"format": "hume"},
                                           "steps": [*_one_by_one("hume", 0.04), _plays(0.32, 1.3)]},
     "ElevenLabs splits a word": {"words": True, "options": {"format": "elevenlabs"}, "steps": _split_word()},
+    "characters of scripts without blanks": {
+        "words": True, "options": {"format": "elevenlabs", "own": {
+            "ままとぱ": "M AA M AA T OW P AA", "食べます": "T AA B EH M AA S", "妈妈": "M AA M AA", "แม่": "M EH"}},
+        "steps": [*_characters("ままとぱぱはパンを食べます。妈妈", "！แม่และพ่อ 爸爸,朋友"), _plays(0, 6)]},
+    "messages that end with a blank of no length": {
+        "words": True, "options": {"format": "elevenlabs"},
+        "steps": [*_characters("Bob ", "may ", "hum ", "by."), _plays(0, 3)]},
+    "named answers, each told before its sound": {
+        "words": True, "steps": [
+            _answer("a", ("Maybe", 0.1, 0.5), ("people", 0.55, 0.95)), _plays(0, 0.5), _answer("b", ("hum", 0.1, 0.4)),
+            _plays(0.52, 0.8), _answer("c", ("pool", 0.1, 0.5)), _answer("b", ("by", 0.45, 0.8)), _plays(0.82, 1.28),
+            ["begin", 1.3], _answer("b", ("the", 0.85, 1.0)), _plays(1.3, 2.58), ["begin", 2.6], _plays(2.6, 4)]},
+    "begun at once after a cancel, and told its sound": {
+        "words": True, "steps": [
+            _answer("a", ("Maybe", 0.1, 0.5), ("people", 0.55, 0.95)), _plays(0, 0.5), ["cancel", 200],
+            _answer("b", ("late", 0.1, 0.4)), _plays(0.52, 0.8), ["begin", None], _answer("b", ("late", 0.5, 0.8)),
+            _answer("c", ("hum", 0.1, 0.4)), _plays(0.82, 0.98), ["begin", 1.1], _answer("c", ("by", 0.45, 0.8)),
+            _answer("a", ("pool", 0.1, 0.4)), _plays(1, 3)]},
     "Inworld's phones": {"options": {"format": "inworld"}, "steps": [*_sample("inworld"), _plays(0, 1.3)]},
     "Polly's visemes": {"options": {"format": "polly"}, "steps": [*_sample("polly"), _plays(0, 1.5)]},
     "Piper's chunks": {"options": {"format": "piper"}, "steps": [*_sample("piper"), _plays(0, 4)]},

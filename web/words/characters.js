@@ -6,6 +6,20 @@ const BLANKS = new RegExp(`${BLANK}+`, "u");
 const AROUND = new RegExp(`^${BLANK}+|${BLANK}+$`, "gu");
 const TAGS = { "[": "]", "<": ">" };
 
+/** LABIAL_VOICE_LETTERS: characters of a word, at most; and how many a word has where another one of kana begins the
+ * next. */
+const LETTERS = 60;
+const KANA_MOST = 4;
+/** Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks. */
+const MARKS = /[\u2014\u2015\u2025\u2026、。〈〉《》「」『』【】〔〕〖〗〘〙〚〛・！，：；？]/u;
+const STOPS = /[,.!?:;]/u;
+const KANA = /^[\u3041-\u30ff]/u;
+const HAN = /^[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\u{20000}-\u{3ffff}]/u;
+const THAI = /^[\u0e01-\u0eff]/u;
+/** With what a word of kana goes on, also after so many; and vowels of Thai and Lao that begin a syllable. */
+const GOES_ON = /[ぁぃぅぇぉすっゃゅょゎん\u3099-\u309fァィゥェォスッャュョヮンヹヺー-ヿ]/u;
+const FIRST = /[\u0e40-\u0e44\u0ec0-\u0ec4]/u;
+
 /** A text without half surrogates, which have no UTF-8. */
 export function whole(text) {
     return text.replace(/\p{Cs}/gu, "?");
@@ -14,6 +28,40 @@ export function whole(text) {
 /** The texts between blanks. */
 export function split(text) {
     return text.split(BLANKS).filter(Boolean);
+}
+
+/** The words of a text, as wordsOfCharacters() finds them, but with its tags. */
+export function wordsOf(text) {
+    const words = [[]];
+    for (const character of whole(text)) {
+        if (ends(words.at(-1), character)) {
+            words.push([]);
+        } else {
+            if (begins(words.at(-1), character)) words.push([]);
+            words.at(-1).push(character);
+        }
+    }
+    return words.map((word) => word.join("")).filter(Boolean);
+}
+
+/** Whether a word, a list of characters, ends at a character, which belongs to none. */
+function ends(word, character) {
+    const last = word.at(-1) ?? "";
+    const isUnspaced = KANA.test(last) || HAN.test(last) || THAI.test(last);
+    return (isUnspaced && STOPS.test(character)) || BLANKS.test(character) || MARKS.test(character);
+}
+
+/** Whether a character begins another word, though no blank stands before it: where a word of Japanese probably ends,
+ * before Han or katakana behind hiragana; where kana go on for long; before a vowel that is written first in its
+ * syllable; and where the word is too long. */
+function begins(word, character) {
+    if (!word.length) return false;
+    if (word.length >= LETTERS || FIRST.test(character)) return true;
+    const last = word.at(-1);
+    if (!KANA.test(last) || GOES_ON.test(character)) return false;
+    const isKana = KANA.test(character);
+    if (last < "\u30a0" && (HAN.test(character) || (isKana && character > "\u30a0"))) return true;
+    return word.length >= KANA_MOST && isKana;
 }
 
 export function strip(text) {
@@ -28,11 +76,11 @@ export function even(value) {
 }
 
 /** The words { text, start, end, ends } of characters with their times, whole milliseconds: what stands between blanks,
- * without [tags] and <tags>. A bracket that is not closed begins none. An item of several characters shares its time
- * evenly among them; a character that ends before the one before it ends with that. */
-export function wordsOfCharacters(items, starts, ends) {
+ * or where ends() or begins() says so, without [tags] and <tags>. A bracket that is not closed begins none. An item of
+ * several characters shares its time evenly among them; a character that ends before the one before it ends with that. */
+export function wordsOfCharacters(items, starts, finishes) {
     const words = [];
-    let text = "";
+    let word = [];
     let start = 0;
     let times = [0];
     let closing = "";
@@ -41,24 +89,24 @@ export function wordsOfCharacters(items, starts, ends) {
         last[mark] = items.reduce((found, item, number) => (item.includes(mark) ? number : found), -1);
     }
     [...items, " "].forEach((item, number) => {
-        const [begin, end] = number < items.length ? [starts[number], ends[number]] : [0, 0];
+        const [begin, end] = number < items.length ? [starts[number], finishes[number]] : [0, 0];
         const characters = [...whole(item)];
         const moment = (place) => begin + Math.floor(((end - begin) * place) / characters.length);
         characters.forEach((character, place) => {
             const mark = Object.hasOwn(TAGS, character) ? TAGS[character] : "";
             if (!closing && mark && last[mark] >= number) closing = mark;
-            if (closing || BLANKS.test(character)) {
-                if (text) words.push({ text, start, end: times[times.length - 1], ends: times.slice(1) });
-                text = "";
-                times = [0];
-                if (character === closing) closing = "";
-                return;
+            const isRead = !closing && !ends(word, character);
+            if (word.length && (!isRead || begins(word, character))) {
+                words.push({ text: word.join(""), start, end: times[times.length - 1], ends: times.slice(1) });
+                word = [];
             }
-            if (!text) {
+            if (character === closing) closing = "";
+            if (!isRead) return;
+            if (!word.length) {
                 start = moment(place);
                 times = [start];
             }
-            text += character;
+            word.push(character);
             times.push(Math.max(times[times.length - 1], moment(place + 1)));
         });
     });

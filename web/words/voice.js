@@ -18,8 +18,8 @@ const [DAY, HOUR] = [86400, 3600];
 const LONG = 10;
 /** The longest cancel, milliseconds. */
 const CANCEL_MAX = 1e6;
-/** LABIAL_ERROR_FULL. */
-const FULL = -8;
+/** LABIAL_OK, LABIAL_WAITING and LABIAL_ERROR_FULL. */
+const [OK, WAITING, FULL] = [0, 1, -8];
 /** Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t). */
 const KINDS = { phonemes: 0, azure: 1, polly: 2, words: 3, characters: 4 };
 const [ABSOLUTE, CHAINED, JOINED] = [0, 1, 2];
@@ -63,7 +63,7 @@ export class Voice extends EventTarget {
     #clock; // null without one
     #given; // as it was given
     #origin; // what the clock tells when the voice's time is 0; null until begin() says
-    #cancel = 0; // when the last cancel was, milliseconds,
+    #since = 0; // when the clock moved last, or a cancel was, milliseconds,
     #eased = 0; // and the poses since then
     #heard = -1; // the time of the call before
     #settings; // of push()
@@ -181,7 +181,7 @@ export class Voice extends EventTarget {
         this.#open();
         const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), CANCEL_MAX);
         this.#lexicon.wasm.voice_cancel(this.#at, Math.ceil(length - 1e-6));
-        [this.#cancel, this.#eased] = [Date.now(), 0];
+        [this.#since, this.#eased] = [Date.now(), 0];
     }
 
     // ---- What is shown
@@ -397,23 +397,31 @@ export class Voice extends EventTarget {
         return at;
     }
 
-    /** What `take` makes of the poses that are due. After a cancel the clock may stand with its sound: then the face eases
-     * by the program's time. */
+    /** What `take` makes of the poses that are due. After a cancel and at the end the clock may stand with its sound: then
+     * the face eases by the program's time. */
     #poses(seconds, take) {
         this.#open();
         if (seconds !== null && (typeof seconds !== "number" || Number.isNaN(seconds))) {
             throw new TypeError(`the time is ${this.#tools.shown(seconds)}, not a number of seconds or null`);
         }
         const poses = seconds === null || this.#origin === null ? [] : this.#due(seconds - this.#origin, take);
+        const now = Date.now();
         const stands = seconds === null || seconds <= this.#heard;
-        const due = Math.floor((Date.now() - this.#cancel) / 1000 * this.fps);
-        while (stands && this.#eased < due && this.#eases()) poses.push(this.#take(take));
+        if (!stands && !this.cancelled) [this.#since, this.#eased] = [now, 0];
+        const due = Math.floor((now - this.#since) / 1000 * this.fps);
+        while (stands && this.#eased < due) {
+            const result = this.#lexicon.wasm.voice_ease(this.#at, this.#faps);
+            if (result === OK) poses.push(this.#take(take));
+            else if (result === WAITING) this.#eased++;
+            else break;
+        }
         this.#heard = seconds ?? this.#heard;
+        if (poses.length) {
+            const done = this.done && !this.cancelled;
+            if (done && !this.#told) this.dispatchEvent(new Event("ended"));
+            this.#told = done;
+        }
         return poses;
-    }
-
-    #eases() {
-        return this.#lexicon.wasm.voice_ease(this.#at, this.#faps) === 0;
     }
 
     /** What `take` makes of the frames that became due when `heard` seconds of the voice were heard. */
@@ -426,9 +434,6 @@ export class Voice extends EventTarget {
             this.#number = this.#next - 1;
             frames.push(this.#take(take));
         }
-        const done = this.done && !this.cancelled;
-        if (done && !this.#told) this.dispatchEvent(new Event("ended"));
-        this.#told = done;
         return frames;
     }
 

@@ -1,5 +1,5 @@
 // Words for programs: texts, words and characters with their times, and what services tell of them.
-import { split, wordsOfCharacters } from "./characters.js";
+import { wordsOf, wordsOfCharacters } from "./characters.js";
 import { Lexicon } from "./lexicon.js";
 import { MessageReader, readTimings } from "./readers.js";
 import { WordStream, inMilliseconds, segmentsOf } from "./stream.js";
@@ -17,7 +17,7 @@ export class Words {
     phonemes(text, { own, numbers } = {}) {
         const lexicon = this.#lexicon;
         if (typeof text !== "string") throw new TypeError(`the text is ${lexicon.tools.shown(text)}, not text`);
-        const texts = split(text);
+        const texts = wordsOf(text);
         const table = lexicon.table(lexicon.known(own, numbers, texts));
         try {
             return lexicon.read(texts, table);

@@ -122,12 +122,13 @@ def _of_segments(spoken: Spoken) -> Timings:
 
 def _timed(text: str, language: str) -> Timings:
     """Every word as long as it usually is, and a pause at each sign."""
-    from labial.corpus.words import Word, pronunciation, timings_of
+    from labial.corpus.words import Word, pronunciation, timings_of, words_of
 
     how = pronunciation(None, language, False)
     found: Timings = [("SIL", _BEFORE)]
     for word in text.split():
-        said = [(label, length) for label, length in timings_of([Word(word, 0, None)], how) if label != "SIL"]
+        said = [(label, length) for part in words_of(word) if part
+                for label, length in timings_of([Word(part, 0, None)], how) if label != "SIL"]
         found += said
         sign = re.search(r"[,;:.!?](?=\W*$)", word)
         if sign and said:

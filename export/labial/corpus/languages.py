@@ -38,9 +38,12 @@ _CANTONESE = re.compile(r"(?:zh|zho)(?:-hant)?-(?:yue|hk|mo)(?:-.*)?", re.IGNORE
 _JAPANESE = re.compile(r"ja(?:-.*)?")
 #: espeak-ng's voice that reads pinyin as such; "cmn" reads it as English.
 _PINYIN_VOICE = "cmn-latn-pinyin"
-_HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
+#: Characters of Chinese and kanji of Japanese.
+HAN = re.compile("[\u2e80-\u2fdf\u3005-\u3007\u3400-\u4dbf\u4e00-\u9fff\uf900-\ufaff\U00020000-\U0003ffff]")
 #: Marks of espeak-ng's: where words of another language begin, tones, and retroflex consonants.
 _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
+#: The n of Japanese where espeak-ng has a nasal vowel: before p, b, m, and before others.
+_N = re.compile("ũ(?=_[ˈˌ]?[pbm])"), re.compile("ũ")
 #: The vowel of Japanese "desu" and "masu", which is whispered.
 _DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
 _VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
@@ -84,6 +87,11 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
     return found
 
 
+def is_chinese(language: str) -> bool:
+    """Whether a language is written in characters that are a syllable each."""
+    return language == "yue" or bool(_CANTONESE.fullmatch(language) or _CHINESE.fullmatch(language))
+
+
 def speakable(text: str, voice: str) -> Tuple[str, str]:
     """A text as espeak-ng can say it aloud, and the voice that does: Chinese is written in pinyin, with tones, and
     Japanese in kana. Every other text and voice stays as it is. `voice` may have a variant ("cmn+f3")."""
@@ -91,7 +99,7 @@ def speakable(text: str, voice: str) -> Tuple[str, str]:
     if _CANTONESE.fullmatch(language):
         return text, f"yue{plus}{variant}"
     if _CHINESE.fullmatch(language):
-        return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if _HAN.search(text) else (text, voice)
+        return (" ".join(_pinyin(text).split()), _PINYIN_VOICE + plus + variant) if HAN.search(text) else (text, voice)
     if _JAPANESE.fullmatch(language):
         kana = _kana(text)
         if not kana.strip():
@@ -109,7 +117,7 @@ def _say_unspeakable(word: str, language: str) -> None:
     if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
         return
     _unspeakable[key] = None
-    is_kanji = _JAPANESE.fullmatch(language) and _HAN.search(word)
+    is_kanji = _JAPANESE.fullmatch(language) and HAN.search(word)
     hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
     _logger.warning("espeak-ng cannot speak %.40r in the language %r: the lips move for its time alone%s", word,
                     language, hint)
@@ -138,6 +146,8 @@ def _spoken(texts: Sequence[str], language: str, between: str = "") -> List[List
     lines = _ipa(texts, language)
     if between:
         lines = [word for word in lines[0].split(between) if word.strip("_")]
+    if _JAPANESE.fullmatch(language):
+        lines = [_N[1].sub("ɴ", _N[0].sub("m", line)) for line in lines]
     tonal = language.split("-")[0] in ("yue", "th", "vi", "my", "hak", "nan")
     result = [_phonemes(line, tonal) for line in lines]
     return [_with_vowels(phonemes) for phonemes in result] if language.split("-")[0] == "ar" else result
@@ -218,11 +228,31 @@ def _with_vowels(phonemes: Sequence[str]) -> List[str]:
 
 # ---- Chinese
 
+#: Numbers as they are spoken; a digit behind a Latin letter is a tone of pinyin.
+_NUMBER = re.compile(r"(?<![A-Za-z\u00c0-\u024f\u0300-\u036f])\d+(?:\.\d+)?|\d{2,}")
+_DIGITS, _TENS, _MYRIADS = "零一二三四五六七八九", ("", "十", "百", "千"), ("", "万", "亿", "万亿")
+
+
+def _spelt_out(found: re.Match[str]) -> str:
+    """A number in characters. What is longer than they tell, begins with 0 or may be a year is read digit by digit."""
+    whole, point, part = found[0].partition(".")
+    digits = "".join(_DIGITS[int(digit)] for digit in whole)
+    if len(whole) <= 16 and whole[0] != "0" and not re.fullmatch(r"1[1-9]\d\d|20\d\d", found[0]):
+        digits = ""
+        for place, digit in zip(reversed(range(len(whole))), map(int, whole)):
+            digits += _DIGITS[digit] + _TENS[place % 4] if digit else _DIGITS[0]
+            if place % 4 == 0:
+                group = whole[max(0, len(whole) - place - 4) : len(whole) - place]
+                digits = digits.rstrip(_DIGITS[0]) + (_MYRIADS[place // 4] if int(group) else _DIGITS[0])
+        digits = re.sub("^一十", "十", re.sub("零+", "零", digits).rstrip("零"))
+    return digits + ("点" + "".join(_DIGITS[int(digit)] for digit in part) if point else "")
+
 
 def _by_pinyin(word: str) -> Optional[List[str]]:
     """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
     English."""
-    text = _pinyin(word) if _HAN.search(word) else word
+    word = _NUMBER.sub(_spelt_out, word)
+    text = _pinyin(word) if HAN.search(word) else word
     found: List[str] = []
     for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
         syllables = _syllables(part.lower())
@@ -235,8 +265,8 @@ def _pinyin(word: str) -> str:
     try:
         from pypinyin import Style, lazy_pinyin
     except ImportError:
-        return "".join(part if not _HAN.match(part) else f" {_dictionary(part)} "
-                       for part in re.findall(f"(?:{_HAN.pattern})+|[^{_HAN.pattern[1:]}+", word))
+        return "".join(part if not HAN.match(part) else f" {_dictionary(part)} "
+                       for part in re.findall(f"(?:{HAN.pattern})+|[^{HAN.pattern[1:]}+", word))
     return " ".join(lazy_pinyin(word, style=Style.TONE3, v_to_u=True))
 
 
@@ -282,12 +312,12 @@ def _syllables(part: str) -> Optional[List[str]]:
 
 def _kana(word: str) -> str:
     """A word in kana, by fugashi where it has kanji; without it kanji are left out."""
-    if not _HAN.search(word):
+    if not HAN.search(word):
         return word
     tagger = _tagger()
     if tagger is None:
-        return _HAN.sub("", word)
-    said = (item.feature.pron or item.feature.kana or _HAN.sub("", item.surface) for item in tagger(word))
+        return HAN.sub("", word)
+    said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))
     return "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
 
 

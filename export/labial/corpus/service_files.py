@@ -110,7 +110,7 @@ def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunci
         words = [Word(item.text, whole(item.start), None if item.end is None else whole(item.end)) for item in items]
     else:
         words = words_of_characters([item.text for item in items], [whole(item.start) for item in items],
-                                    [whole(item.end or item.start) for item in items])
+                                    [whole(item.end or item.start) for item in items], how.language)
     for before, word in zip(words, words[1:]):
         if word.start < before.start:
             raise DataError(path, None, f"{word.text!r:.40} begins before {before.text!r:.40}, which comes first")

@@ -7,13 +7,16 @@ everything else; then numbers, if they are to be written out by num2words; then 
 
 from __future__ import annotations
 
+import logging
 import re
 import unicodedata
 from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read, read_words
-from labial.corpus.languages import pronounced
+from labial.corpus.languages import HAN, is_chinese, pronounced
 from labial.errors import LabialError, needs
+
+_logger = logging.getLogger("labial")
 
 #: The language of the library's tables.
 ENGLISH = "en"
@@ -24,6 +27,17 @@ LATEST = (1 << 32) - 2
 _STRETCH = re.compile(r"[^\W_]+(?:['’\-.,][^\W_]+)*")
 _NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
 _TAGS = {"[": "]", "<": ">"}
+
+#: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
+_LETTERS, _KANA_MOST = 60, 4
+#: Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks.
+_BLANKS = frozenset("\u2014\u2015\u2025\u2026、。〈〉《》「」『』【】〔〕〖〗〘〙〚〛・！，：；？")
+_STOPS = frozenset(",.!?:;")
+_KANA = re.compile("[\u3041-\u30ff]")
+_UNSPACED = re.compile(f"[\u0e01-\u0eff]|{_KANA.pattern}|{HAN.pattern}")
+#: With what a word of kana goes on, also after so many; and vowels of Thai and Lao that begin a syllable.
+_GOES_ON = frozenset("ぁぃぅぇぉすっゃゅょゎん\u3099\u309a\u309b\u309cゝゞゟァィゥェォスッャュョヮンーヹヺヽヾヿ")
+_FIRST = frozenset("เแโใไເແໂໃໄ")
 
 
 class Word(NamedTuple):
@@ -79,25 +93,28 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
     return found + stream.take()
 
 
-def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int]) -> List[Word]:
-    """The words of characters with their times: what stands between blanks, without [tags] and <tags>. A bracket
-    that is not closed begins none.
+def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int],
+                        language: str = ENGLISH) -> List[Word]:
+    """The words of characters with their times: what stands between blanks, or where :func:`_ends` or :func:`_begins`
+    says so, without [tags] and <tags>. A bracket that is not closed begins none. Each character of Chinese is a word.
 
     An item of several characters shares its time evenly among them. A character that ends before the one before it, as
     rounding and zero lengths make it, ends with that.
     """
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
+    is_each = is_chinese(language)
     last = {mark: max((n for n, item in enumerate(characters) if mark in item), default=-1) for mark in _TAGS.values()}
     for number, (item, begin, end) in enumerate(zip([*characters, " "], [*starts, 0], [*ends, 0])):
-        for place, character in enumerate(item, 1):
+        for place, character in enumerate(_whole(item), 1):
             mark = _TAGS.get(character, "")
             closing = closing or (mark if last.get(mark, -1) >= number else "")
-            if closing or character.isspace():
-                if text:
-                    words.append(Word(text, start, times[-1], tuple(times[1:])))
-                text, times = "", [0]
-                closing = "" if character == closing else closing
+            is_read = not closing and not _ends(text, character)
+            if text and (not is_read or _begins(text, character) or is_each and _are_apart(text[-1], character)):
+                words.append(Word(text, start, times[-1], tuple(times[1:])))
+                text = ""
+            closing = "" if character == closing else closing
+            if not is_read:
                 continue
             if not text:
                 start = begin + (end - begin) * (place - 1) // len(item)
@@ -105,6 +122,65 @@ def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: 
             text += character
             times.append(max(times[-1], begin + (end - begin) * place // len(item)))
     return words
+
+
+def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> List[Tuple[str, float, float]]:
+    """The same for a voice, which is told characters one after the other: with blanks of no length around each
+    character of Chinese."""
+    found: List[Tuple[str, float, float]] = []
+    before = ""
+    for text, start, end in items:
+        length = 0.0 if end is None else end - start
+        for place, character in enumerate(text):
+            begin, until = start + length * place / len(text), start + length * (place + 1) / len(text)
+            if _are_apart(before, character):
+                found.append((" ", begin, begin))
+            found.append((character, begin, until))
+            before = character
+    return found
+
+
+def words_of(text: str) -> List[str]:
+    """The words of a text, as :func:`words_of_characters` finds them, but with its tags. The last one is empty if it
+    cannot go on."""
+    words = [""]
+    for character in _whole(text):
+        if _ends(words[-1], character):
+            words.append("")
+        else:
+            words += [""] * _begins(words[-1], character)
+            words[-1] += character
+    return [*filter(None, words[:-1]), words[-1]]
+
+
+def _whole(text: str) -> str:
+    """A text as the library is given it: half surrogates have no UTF-8."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _are_apart(before: str, character: str) -> bool:
+    return bool(HAN.match(before) or HAN.match(character))
+
+
+def _ends(word: str, character: str) -> bool:
+    """Whether a word ends at a character, which belongs to none."""
+    is_stop = character in _STOPS and bool(_UNSPACED.match(word[-1:]))
+    return is_stop or character.isspace() or character in _BLANKS
+
+
+def _begins(word: str, character: str) -> bool:
+    """Whether a character begins another word, though no blank stands before it: where a word of Japanese probably
+    ends, before Han or katakana behind hiragana; where kana go on for long; before a vowel that is written first in its
+    syllable; and where the word is too long."""
+    last = word[-1:]
+    if not last or len(word) >= _LETTERS or character in _FIRST:
+        return bool(last)
+    if not _KANA.match(last) or character in _GOES_ON:
+        return False
+    is_kana = bool(_KANA.match(character))
+    if last < "\u30a0" and (HAN.match(character) or (is_kana and character > "\u30a0")):
+        return True
+    return len(word) >= _KANA_MOST and is_kana
 
 
 def own_words(texts: Iterable[str], how: Pronunciation) -> OwnWords:
@@ -124,7 +200,12 @@ def known_words(texts: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[
         asked = [item for item in stretches if item not in known]
         said = zip(asked, pronounced(asked, how.language))
         known.update((word, phonemes) for word, phonemes in said if phonemes is not None)
-    return {word: known[word] if word in how.own else known[word][:PHONEMES_MAX] for word in known}
+    for word in known:
+        if word not in how.own and len(known[word]) > PHONEMES_MAX:
+            _logger.warning("%.40r has %d phonemes: the lips move for the first %d", word, len(known[word]),
+                            PHONEMES_MAX)
+            known[word] = known[word][:PHONEMES_MAX]
+    return known
 
 
 def stretches_of(texts: Iterable[str], known: Container[str]) -> List[str]:

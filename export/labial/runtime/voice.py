@@ -13,10 +13,31 @@ import warnings
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone, duration, number
-from labial.core.library import CANCEL_MAX, ERROR_FULL, ERROR_STATE, OK, PRONOUNCE, VISEMES, checked, library, memory
+from labial.core.library import (
+    CANCEL_MAX,
+    ERROR_FULL,
+    ERROR_STATE,
+    OK,
+    PRONOUNCE,
+    VISEMES,
+    WAITING,
+    checked,
+    library,
+    memory,
+)
 from labial.core.words import OwnWords, labels
+from labial.corpus.languages import is_chinese
 from labial.corpus.messages import Messages, Stats
-from labial.corpus.words import ENGLISH, Pronunciation, known_words, own_words, pronunciation, stretches_of
+from labial.corpus.words import (
+    ENGLISH,
+    Pronunciation,
+    characters_apart,
+    known_words,
+    own_words,
+    pronunciation,
+    stretches_of,
+    words_of,
+)
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import LABELS, Model, bundled
@@ -88,7 +109,7 @@ class Voice:
         else:
             checked(self._library.voice_words(self._memory, self._speaker.own.place))
         self._faps, self._shares = (ctypes.c_int16 * CHANNELS)(), (ctypes.c_uint8 * VISEMES)()
-        self._cancelled, self._eased = 0.0, 0  # when the last cancel was, and the poses since then
+        self._since, self._eased = 0.0, 0  # when the clock moved last, or a cancel was, and the poses since then
         self._heard = -math.inf  # the time of the call before
 
     # ---- What becomes known
@@ -140,8 +161,9 @@ class Voice:
         """The next utterance, whose sound begins when `at` seconds were heard: times that are told count from there.
 
         Without `at` it begins where the former one ends, as far as is known, or now if that is over. `utterance` is
-        what the service calls it in its messages; without it, it is that of the first message that tells one. An
-        utterance that was told before its sound began is moved to `at`.
+        what the service calls it in its messages; without it, it is that of the first message that tells one. What
+        waits, since it was told before its sound began, is moved to `at`: the utterance of this name, or without a name
+        the first one that is not over.
         """
         self._open()
         self._checked(self._library.voice_begin(self._memory, -1.0 if at is None else _seconds(at),
@@ -163,7 +185,7 @@ class Voice:
         self._open()
         length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
         self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
-        self._cancelled, self._eased = time.monotonic(), 0
+        self._since, self._eased = time.monotonic(), 0
 
     # ---- What is shown
 
@@ -173,8 +195,9 @@ class Voice:
         to three.
 
         A clock that goes back, or None from one that has not begun, yields none; but while it stands with the sound
-        after :meth:`cancel`, the face comes to rest in time that passes. More than a second after the last call, only
-        the latest frame is returned. Raises LabialError for more than a year and what is no number.
+        after :meth:`cancel`, or after :meth:`finish` at the end of what is known, the face comes to rest in time that
+        passes. More than a second after the last call, only the latest frame is returned. Raises LabialError for more
+        than a year and what is no number.
         """
         self._open()
         heard = -1.0 if seconds is None else number(seconds, "a time")
@@ -184,9 +207,16 @@ class Voice:
         due = math.floor(heard * self.fps + 1e-6)
         while due >= 0 and self._checked(self._library.voice_frame(self._memory, due, self._faps)) == OK:
             frames.append(self._frame())
-        passed = math.floor((time.monotonic() - self._cancelled) * self.fps) if heard <= self._heard else 0
-        while self._eased < passed and self._library.voice_ease(self._memory, self._faps) == OK:
-            frames.append(self._frame())
+        now = time.monotonic()
+        if heard > self._heard and not self._library.voice_cancelled(self._memory):
+            self._since, self._eased = now, 0
+        passed = math.floor((now - self._since) * self.fps) if heard <= self._heard else 0
+        result = OK
+        while self._eased < passed and result in (OK, WAITING):
+            result = self._library.voice_ease(self._memory, self._faps)
+            if result == OK:
+                frames.append(self._frame())
+            self._eased += result == WAITING
         self._heard = heard
         return frames
 
@@ -207,8 +237,8 @@ class Voice:
     @property
     @alone
     def done(self) -> bool:
-        """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any;
-        after :meth:`cancel`, when the face is neutral; and when the voice is closed."""
+        """Whether nothing more will move: after :meth:`finish`, half a second after the last word, if there was any,
+        also where the clock stands; after :meth:`cancel`, when the face is neutral; and when the voice is closed."""
         return self._memory is None or bool(self._library.voice_done(self._memory))
 
     @property
@@ -292,6 +322,8 @@ class Voice:
             texts = [numbers[text] for text, _, _ in items]
         else:
             self._model.nearest("SIL")  # raises an error for a model of other phonemes
+            if kind == "characters" and self._speaker.apart:
+                items = characters_apart([(str(text), start, end) for text, start, end in items])
             texts = [str(text).encode("utf-8", "replace")[:0xFFFF] for text, _, _ in items]
         if kind in ("words", "characters"):
             self._speaker.prepare([str(text) for text, _, _ in items], kind == "characters")
@@ -308,6 +340,7 @@ class _Speaker:
 
     def __init__(self, how: Pronunciation) -> None:
         self.asks = how.language != ENGLISH or how.numbers
+        self.apart = is_chinese(how.language)  # each character is a word
         self.own = own_words([], how)  # an error in a word of the caller's own is raised now
         self.callback = PRONOUNCE(self._ask)
         self._how, self._tail = how, ""
@@ -320,9 +353,8 @@ class _Speaker:
         if not self.asks:
             return
         if joined:  # characters: the last word may go on in the next message
-            text = self._tail + "".join(texts)
-            texts = text.split()
-            self._tail = texts[-1] if texts and not text[-1].isspace() else ""
+            texts = words_of(self._tail + "".join(texts))
+            self._tail = texts[-1]
         asked = stretches_of(texts, {**self._spoken, **self._how.own})
         if asked:
             if len(self._spoken) > _SPOKEN:

@@ -12,6 +12,7 @@ from labial.corpus.words import (
     phonemes_of,
     pronunciation,
     timings_of,
+    words_of,
     words_of_characters,
 )
 from labial.errors import LabialError
@@ -33,7 +34,7 @@ def phonemes(text: str, *, own: Optional[Mapping[str, Sounds]] = None, language:
     """
     if not isinstance(text, str):
         raise TypeError(f"a text is a str, not {type(text).__name__}")
-    found = phonemes_of(text.split(), pronunciation(own, language, numbers))
+    found = phonemes_of(words_of(text), pronunciation(own, language, numbers))
     return [label for spoken in found for label in spoken.phonemes]
 
 
@@ -67,7 +68,8 @@ def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], 
     list of characters, blanks included. Raises LabialError where the numbers of characters and times differ."""
     if not len(text) == len(starts) == len(ends):
         raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
-    found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends])
+    found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends],
+                                language)
     expect_milliseconds(max((float(end) - float(start) for start, end in zip(starts, ends)), default=0.0))
     return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
