@@ -16,6 +16,9 @@
 /* How much shorter than what is known a sound may be that has ended, milliseconds. */
 #define SHORTER 100
 
+/* How long a clock that has not stopped may stand, milliseconds: some move in steps. */
+#define STEP 80u
+
 /* ---- The stream -------------------------------------------------------------------------------------------------- */
 
 static void on_voice_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -276,7 +279,7 @@ int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS])
     if (voice->streaming) {
         if (!is_at_end(voice))
             return LABIAL_DONE;
-        if (voice->still < frames_of(voice, LABIAL_VOICE_REST - REST_EASING)) {
+        if (voice->still < frames_of(voice, STEP)) {
             voice->still++;
             return LABIAL_WAITING;
         }

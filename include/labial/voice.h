@@ -241,7 +241,7 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
 /*
  * The next pose on the way to the neutral face, for a clock that stands with the sound: once in each frame's time in
  * which labial_voice_next() gives none. The way begins at once after labial_voice_cancel(); after labial_voice_finish()
- * where the clock stands at the end of what is known or up to 100 ms before it, once it stood for 200 ms. It is no
+ * where the clock stands at the end of what is known or up to 100 ms before it, once it stood for 80 ms. It is no
  * frame of the sound, so that what is told for the time at which the clock stands begins there.
  *
  * Returns LABIAL_OK, LABIAL_WAITING until the clock stood for so long, LABIAL_DONE where there is no such way or at its

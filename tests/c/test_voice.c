@@ -1312,14 +1312,14 @@ TEST_AFTER(begin_frames, a_face_comes_to_rest_at_the_end_while_the_clock_stands)
     assert_int_equal(labial_voice_finish(&voice), LABIAL_OK);
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* the player waits for sound */
     show_until(900);
-    for (unsigned i = 0; i < 8; i++) { /* a clock of large steps */
+    for (unsigned i = 0; i < 4; i++) { /* a clock of large steps */
         assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_WAITING);
     }
     show_until(940);
-    for (unsigned i = 0; i < 25; i++) {
+    for (unsigned i = 0; i < 19; i++) {
         assert_int_equal(labial_voice_done(&voice), 0);
         assert_int_equal(labial_voice_next(&voice, 940, NULL, faps), LABIAL_WAITING);
-        assert_int_equal(labial_voice_ease(&voice, faps), i < 10 ? LABIAL_WAITING : LABIAL_OK);
+        assert_int_equal(labial_voice_ease(&voice, faps), i < 4 ? LABIAL_WAITING : LABIAL_OK);
     }
     assert_memory_equal(faps, rest, sizeof rest);
     assert_int_equal(labial_voice_done(&voice), 1);

@@ -279,11 +279,11 @@ test("a mouth closes at the end although the clock stops with the sound, and the
             context.mock.timers.tick(10);
             if (call === "at") poses.push(rows([voice.at(1.24)])[0]);
             else poses.push(...rows(voice.played(1.24)));
-            assert.deepEqual([voice.done, ended], i < 49 ? [false, 0] : [true, 1]);
+            assert.deepEqual([voice.done, ended], i < 37 ? [false, 0] : [true, 1]);
         }
-        if (call === "at") assert.deepEqual(poses[19], stands);
+        if (call === "at") assert.deepEqual(poses[8], stands);
         else assert.equal(poses.length, 15);
-        assert.notDeepEqual(poses[call === "at" ? 25 : 0], stands);
+        assert.notDeepEqual(poses[call === "at" ? 20 : 0], stands);
         assert.deepEqual([...new Set(poses.at(-1))], [0]);
         assert.ok(Math.abs(voice.time - 1.24) < 0.001);
     }

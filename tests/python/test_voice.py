@@ -19,6 +19,7 @@ import pytest
 
 import labial
 from labial.core.words import OwnWords
+from labial.integrations.lips import Lips
 from messages import SAMPLES
 from oracle import Plan, rested, times
 from packages import needs_runtime
@@ -160,11 +161,26 @@ def test_a_face_comes_to_rest_at_the_end_while_the_clock_stands(monkeypatch: pyt
         stands = played(voice, 0.82, 0.96)[-1]
         shown: List[Tuple[int, ...]] = []
         for _ in range(60):
-            passed += 0.01
+            passed += 0.0101
             shown += [frame.faps for frame in voice.played(0.96)]
-            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.215)
+            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.1)
         assert shown[0] != stands and shown[-1] == (0,) * 13
         assert voice.time == 0.98
+
+
+def test_lips_that_come_to_rest_at_the_end_do_not_part_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of agents ease wherever a clock stands, a little later."""
+    passed = 100.0
+    monkeypatch.setattr("labial.runtime.voice.time.monotonic", lambda: passed)
+    with Lips() as lips:
+        lips.push("AA", 0.0, 1.0)
+        lips.finish()
+        opening = [-sum(lips.played(number / 50)[-1].faps[3:5]) for number in range(49)][-1:]
+        for _ in range(60):
+            passed += 0.0101
+            opening += [-sum(frame.faps[3:5]) for frame in lips.played(48 / 50)]
+        assert opening[0] > 400 and opening[-1] == 0 and opening == sorted(opening, reverse=True)
+        assert lips.done
 
 
 def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
