@@ -390,7 +390,7 @@ int labial_articulation(labial_t *stream, unsigned percent)
 }
 
 /* Frames as milliseconds, rounded. */
-static uint32_t milliseconds_of(uint32_t frames, uint32_t rate)
+static uint32_t milliseconds_of_frames(uint32_t frames, uint32_t rate)
 {
     const uint32_t seconds = labial_quotient(frames, rate), rest = frames - seconds * rate;
     return seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
@@ -402,10 +402,10 @@ labial_latency_t labial_latency(const labial_t *stream)
     if (status(stream) == LABIAL_OK) {
         const uint32_t rate = stream->models[stream->slot]->frames_per_second;
         latency.frames = stream->pending;
-        latency.milliseconds = milliseconds_of(latency.frames, rate);
+        latency.milliseconds = milliseconds_of_frames(latency.frames, rate);
         latency.phonemes = stream->units.count;
         latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
-        latency.delay_milliseconds = milliseconds_of(latency.delay, rate);
+        latency.delay_milliseconds = milliseconds_of_frames(latency.delay, rate);
     }
     return latency;
 }
