@@ -7,7 +7,7 @@
 #include "labial/labial.h"
 
 enum {
-    PER_TICK = 3500,     /* the queue, floors and contact, fades, the callback's frame */
+    PER_TICK = 3200,     /* the queue, floors and contact, fades, the callback's frame */
     PER_TAP = 190,       /* of the kernels, in all channels */
     PER_COMPONENT = 600, /* of a phoneme whose shape is selected, in all channels */
     PER_KNOT = 400,      /* of a pair, in all channels */

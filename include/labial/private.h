@@ -65,7 +65,7 @@ typedef struct {
 
 /* State of the solution of one channel (trajectory.c): the recursion, and the row that the next one completes. */
 typedef struct {
-    uint8_t shifts[2]; /* headroom of the last row's two divisors, where cores do not count leading zeros */
+    uint8_t shifts[2]; /* headroom of the last row's two divisors, where cores do not count leading zeros; 0 at first */
     uint16_t hold, delta;
     int32_t row, bent; /* Q16 */
     int32_t k1, k2;    /* Q16 */

@@ -104,6 +104,7 @@ static void go_forward(unsigned length, unsigned most, labial_factors_t *factors
     labial_terms_t terms;
     unsigned run;
     memset(&solver, 0x55, sizeof solver);
+    memset(solver.shifts, 0, sizeof solver.shifts); /* as a reset leaves them */
     memset(frames, 0x55, sizeof frames);
     for (unsigned t = 0; t < length; t++) {
         frames[t].target[CHANNEL] = target[t];
@@ -437,7 +438,7 @@ static double largest_pivot(unsigned length, const char *what, unsigned round)
 {
     const double slack = 100; /* for rounding */
     labial_factors_t factors[FRAMES + 1];
-    labial_solver_t solver;
+    labial_solver_t solver = { 0 };
     labial_terms_t terms;
     double most = 0;
     require_accepted(what, round);

@@ -400,9 +400,10 @@ def test_measured_figures_take_the_place_of_the_baselines() -> None:
     assert pages.refresh(SOURCE, figures.of(SOURCE, measured), write=False) == []
     grown = [dataclasses.replace(one, value=one.value + 1000.0) if one.figure == "labial_t" else one
              for one in measured]
-    (complaint,) = pages.refresh(SOURCE, figures.of(SOURCE, grown), write=False)
+    complaints = pages.refresh(SOURCE, figures.of(SOURCE, grown), write=False)
     (size,) = {one.value for one in grown if one.figure == "labial_t" and one.target == "m0"}
-    assert complaint.startswith("docs/figures.md:") and f"should be {size:,.0f}" in complaint
+    assert any(complaint.startswith("docs/figures.md:") for complaint in complaints)
+    assert all(f"should be {size:,.0f}" in complaint for complaint in complaints)
     others = [dataclasses.replace(one, tool="another compiler") for one in grown]
     assert pages.refresh(SOURCE, figures.of(SOURCE, others), write=False) == []
 
