@@ -313,6 +313,14 @@ def test_texts_are_read_as_a_voice_reads_them(trained: tables.WordTables) -> Non
     assert len(cases.REPORTED) > 60 and not set(wrong) & set(cases.REPORTED)
 
 
+def test_letters_have_the_names_that_people_say(trained: tables.WordTables) -> None:
+    """Each letter by its name in CMUdict, "double u" but for its stress."""
+    names = ("EY|B IY|S IY|D IY|IY|EH F|JH IY|EY CH|AY|JH EY|K EY|EH L|EH M|EH N|OW|P IY|K Y UW|AA R|EH S|T IY|Y UW|"
+             "V IY|D AH B AH L Y UW|EH K S|W AY|Z IY").split("|")
+    for letter, name in zip("ABCDEFGHIJKLMNOPQRSTUVWXYZ", names):
+        assert spoken(trained, f"{letter}.B.") == f"{name} B IY", letter
+
+
 def test_capitals_of_words_are_words() -> None:
     """Common words that are written in capitals are not spelt, as in "STOP THAT"."""
     words = dictionary.read_common(dictionary.COMMON)
