@@ -22,8 +22,7 @@ from models import lab
 from npm import TOOLS_MISSING, install, package, tools
 from packages import SOURCE
 from pages import parse
-from test_animation import APPLE
-from test_mouths import SAY, say
+from test_animation import APPLE, SAY, say
 
 PAGE = SOURCE / "docs" / "adapters.md"
 BROWSER = THREE_D

@@ -115,7 +115,7 @@ def check_all(texts: Dict[str, str], tolerance: float, phonemes: List[Tuple[str,
         assert objects[t]["frame"] == t and objects[t]["time"] == pytest.approx(t / 50)
         assert objects[t]["faps"] == pytest.approx(dict(zip(FAP_COLUMNS, frame)), abs=tolerance)
         assert objects[t]["arkit"] == pytest.approx(expected, abs=0.0006 + shared + tolerance / 100)
-    for name in FACES:  # weights alone; tests of what they show are test_mouths.py's
+    for name in FACES:  # weights alone; what they show is tested below
         rows = [json.loads(line) for line in texts[name].splitlines()]
         assert [row["frame"] for row in rows] == list(range(len(faps)))
         for key, column in outputs(face(name), faps, known).items():

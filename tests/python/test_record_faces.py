@@ -19,7 +19,6 @@ from labial.capture.landmarks import USED, Given
 from labial.capture.record import SURE, Lag, advice, estimate, record
 from labial.corpus import Episode, Segment, read_corpus
 from labial.corpus.apex import STEP, WINDOW, envelope, read_wave, with_apexes
-from labial.corpus.episode import Segment
 from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError
