@@ -60,17 +60,16 @@ def mesh() -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
 
 
 @cache
-def draw(opening: float, yaw: float = 0.0, pitch: float = 0.0) -> np.ndarray:
-    """(SIZE, SIZE, 3) BGR: the face with its lips `opening` pixels apart, 0 closed, turned by degrees."""
+def draw(opening: float, yaw: float = 0.0) -> np.ndarray:
+    """(SIZE, SIZE, 3) BGR: the face with its lips `opening` pixels apart, 0 closed, turned aside by degrees."""
     picture, rest, triangles, jaw = mesh()
     moved = rest.copy()
     moved[:, 1] += jaw * (opening - (rest[14, 1] - rest[_UPPER, 1]))
     head = slice(0, len(rest) - 16)
-    a, b = np.radians([yaw, pitch])
+    a = np.radians(yaw)
     about_y = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
-    about_x = np.array([[1, 0, 0], [0, np.cos(b), -np.sin(b)], [0, np.sin(b), np.cos(b)]])
     pivot = rest[:468].mean(axis=0) + (0, 0, 80)
-    moved[head] = (moved[head] - pivot) @ (about_y @ about_x).T + pivot
+    moved[head] = (moved[head] - pivot) @ about_y.T + pivot
     result = picture.copy()
     for corners in triangles[np.argsort(-moved[triangles, 2].mean(axis=1))]:  # the farthest first
         source, target = rest[corners, :2].astype(np.float32), moved[corners, :2].astype(np.float32)
