@@ -12,7 +12,6 @@ import json
 import os
 import random
 import re
-import subprocess
 from pathlib import Path
 from typing import Dict, Iterator, List, NamedTuple, Tuple
 
@@ -27,6 +26,7 @@ from labial.rig.animation import FORMATS, LIVE_LINK, arkit, face, outputs
 from labial.rig.description import read
 from labial.tables.model import save
 from models import lab, random_model
+from packages import run
 from scripts import read_frames
 
 SAY = os.environ.get("LABIAL_SAY", "")
@@ -198,7 +198,7 @@ def test_long_motion_has_good_timecodes() -> None:
 @needs_say
 def test_programs_write_the_same_formats() -> None:
     """Catches a format that only one of `labial synth` and labial-say has."""
-    told = subprocess.run([SAY, "--to", "?"], capture_output=True, encoding="utf-8", timeout=60, check=False).stderr
+    told = run(SAY, "--to", "?", status=2)
     names = re.fullmatch(r"labial-say: --to is (.*), not '\?'; see labial-say --help\n", told)
     assert names and set(re.split(", | or ", names[1])) == set(FORMATS), told
 
@@ -224,8 +224,7 @@ VOWELS = {"vrm": "aa ih ou ee oh".split(), "oculus": "aa E ih oh ou".split()}
 
 def say(timings: str, form: str) -> str:
     """What labial-say makes of timings."""
-    done = subprocess.run([SAY, "--to", form], input=timings.encode(), capture_output=True, timeout=60, check=True)
-    return done.stdout.decode("ascii")
+    return run(SAY, "--to", form, text=timings)
 
 
 class Motion(NamedTuple):

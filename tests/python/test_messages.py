@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import logging
 import re
-import subprocess
 import sys
 import time
 from collections import namedtuple
@@ -27,7 +26,7 @@ from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
 from messages import SAMPLES
-from packages import CC, SOURCE, needs_runtime
+from packages import CC, SOURCE, needs_runtime, run
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
 
@@ -326,12 +325,10 @@ int main(int count, char **arguments)
 }
 """, encoding="ascii")
     options = [CC, "-O1", f"-I{SOURCE}/include", f"-I{SOURCE}/lib/models"]
-    subprocess.run([*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o"],
-                   check=True)
-    subprocess.run([*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
-                    tmp_path / "main"], check=True)
-    shown = subprocess.run([tmp_path / "main", UNKNOWN], check=True, capture_output=True, text=True).stdout
-    longer, shorter = map(int, shown.split())
+    run(*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o")
+    run(*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
+        tmp_path / "main")
+    longer, shorter = map(int, run(tmp_path / "main", UNKNOWN).split())
     assert 1000 < shorter < longer < 3 * shorter, (shorter, longer)
 
 

@@ -4,7 +4,6 @@ phoneme, from the envelope of its sound: by itself, in `labial record` and in th
 
 from __future__ import annotations
 
-import wave
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +22,7 @@ from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import SPEECH
 from labial.errors import DataError
 from labial.train import without_apex
+from models import write_wav
 from packages import SOURCE
 from test_corpora import PHSEG
 from test_corpora import face as captured
@@ -231,13 +231,8 @@ def sound(*loud: float, seconds: float = 3.0) -> np.ndarray:
 
 
 def save(path: Path, samples: np.ndarray, channels: int = 1, width: int = 2) -> Path:
-    with wave.open(str(path), "wb") as out:
-        out.setnchannels(channels)
-        out.setsampwidth(width)
-        out.setframerate(RATE)
-        out.writeframes(np.repeat(np.rint(samples / 1.1 * 32767 * 256 ** (width - 2)), channels)
-                        .astype({1: "u1", 2: "<i2", 4: "<i4"}[width]).tobytes())
-    return path
+    whole = np.rint(samples / 1.1 * 32767 * 256 ** (width - 2))
+    return write_wav(path, np.stack([whole] * channels, axis=1), RATE, width)
 
 
 def test_the_envelope_is_the_moving_root_mean_square() -> None:

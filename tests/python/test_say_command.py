@@ -7,9 +7,7 @@ import importlib.util
 import json
 import re
 import shutil
-import subprocess
 import sys
-import wave
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, List, Tuple
@@ -22,8 +20,8 @@ from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.corpus.episode import Segment
 from labial.errors import LabialError
-from models import random_model
-from packages import SOURCE, needs_runtime
+from models import random_model, write_wav
+from packages import SOURCE, needs_runtime, run
 
 pytestmark = needs_runtime
 
@@ -65,9 +63,7 @@ def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
     """Right after `pip install`: without numpy, and without a synthesiser."""
     code = ("import sys; sys.modules['numpy'] = None\n"
             "from labial.__main__ import main; sys.exit(main(['say', 'Hello there', '-o', sys.argv[1]]))")
-    done = subprocess.run([sys.executable, "-c", code, str(tmp_path / "a.html")], capture_output=True, text=True,
-                          check=False, env={"PATH": "", "PYTHONDONTWRITEBYTECODE": "1", **_environment()})
-    assert done.returncode == 0, done.stderr
+    run(sys.executable, "-c", code, tmp_path / "a.html", env={"PATH": ""})
     assert "labial-mouth" in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
@@ -77,23 +73,14 @@ def test_another_language_needs_no_numpy(tmp_path: Path) -> None:
     code = ("import sys; sys.modules['numpy'] = None\n"
             "from labial.__main__ import main\n"
             "sys.exit(main(['say', '--language', 'de', 'Guten Morgen', '-o', 'x.lab']))")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    run(sys.executable, "-c", code, cwd=tmp_path)
     assert [label for label, _ in labial.read_timings(tmp_path / "x.lab")][1] == "G"
-
-
-def _environment() -> dict:
-    import os
-
-    return {name: os.environ[name] for name in ("PYTHONPATH", "LABIAL_RUNTIME") if name in os.environ}
 
 
 def test_a_recording_is_heard(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Its sound is in the page; where it is cut off or empty, that is said."""
     sound, page = tmp_path / "a.wav", tmp_path / "a.html"
-    with wave.open(str(sound), "wb") as file:
-        file.setparams((1, 2, 16000, 0, "NONE", ""))
-        file.writeframes(bytes(64000))
+    write_wav(sound, np.zeros(32000))
     assert main(["say", "Hello", "--audio", str(sound), "-o", str(page)]) == 0
     assert "data:audio/wav;base64," in page.read_text(encoding="utf-8") and not capsys.readouterr().err
     sound.write_bytes(sound.read_bytes()[:32044])
@@ -223,21 +210,14 @@ def test_wrong_arguments(arguments: Any, message: str) -> None:
 
 # ---- The command -----------------------------------------------------------------------------------------------------
 
-PHONES = "0 .2 SIL\n.2 .4 M\n.4 .8 AA\n.8 1 SIL\n"
-
-
 @pytest.fixture(name="sound")
 def fixture_sound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> np.ndarray:
     """A buzz of .4 s in a second, in the folder in which commands run as a.wav, with a.lab; (16000,) int16."""
     monkeypatch.chdir(tmp_path)
     time = np.arange(16000) / 16000
     samples = (8000 * np.sign(np.sin(2 * np.pi * 150 * time)) * ((time > 0.4) & (time < 0.8))).astype("<i2")
-    with wave.open("a.wav", "wb") as file:
-        file.setnchannels(1)
-        file.setsampwidth(2)
-        file.setframerate(16000)
-        file.writeframes(samples.tobytes())
-    Path("a.lab").write_text(PHONES)
+    write_wav(Path("a.wav"), samples)
+    Path("a.lab").write_text("0 .2 SIL\n.2 .4 M\n.4 .8 AA\n.8 1 SIL\n")
     return samples
 
 

@@ -9,7 +9,6 @@ import csv
 import ctypes
 import ctypes.util
 import io
-import os
 import shutil
 import stat
 import subprocess
@@ -32,7 +31,8 @@ from labial.hearing import espeak, targets
 from labial.hearing.speech_corpus import Written, read_sentences, write_corpus
 from labial.hearing.voices import Spoken
 from labial.hearing.voices import speak as speak_texts
-from packages import SOURCE, needs_runtime
+from packages import CC, SOURCE, needs_runtime
+from packages import run as ran
 from test_say import run
 
 PROGRAMS = ("flite", "espeak")
@@ -156,8 +156,7 @@ def test_lips_are_shut_while_espeak_is_silent(tmp_path: Path) -> None:
 def closure(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """tools/speak/closure.c as a library."""
     target = tmp_path_factory.mktemp("closure") / "closure.so"
-    subprocess.run([os.environ.get("LABIAL_CC", "cc"), "-O1", "-shared", "-fPIC",
-                    str(SOURCE / "tools/speak/closure.c"), "-o", str(target)], check=True)
+    ran(CC, "-O1", "-shared", "-fPIC", SOURCE / "tools/speak/closure.c", "-o", target)
     library = ctypes.CDLL(str(target))
     library.closure_begin.restype = ctypes.c_uint64
     return library
@@ -379,8 +378,7 @@ def test_a_corpus_is_spoken(tmp_path: Path) -> None:
     code = ("import sys; from labial.hearing.speech_corpus import write_corpus\n"
             "print(*write_corpus(sys.argv[1], {}, {}, .15, {}))")
     for name, seed in (("a", 0), ("b", 0), ("c", 1)):
-        given = [sys.executable, "-c", code.format(sentences, voices, seed), str(tmp_path / name)]
-        told = subprocess.run(given, capture_output=True, encoding="utf-8", check=True).stdout.split()
+        told = ran(sys.executable, "-c", code.format(sentences, voices, seed), tmp_path / name).split()
         if name == "a":
             done = Written(int(told[0]), float(told[1]))
     sounds = sorted((tmp_path / "a").glob("*.flac"))

@@ -10,7 +10,6 @@ import json
 import math
 import random
 import shutil
-import subprocess
 import sys
 import time
 from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
@@ -22,7 +21,7 @@ from labial.core.words import OwnWords
 from labial.integrations.lips import Lips
 from messages import SAMPLES
 from oracle import Plan, rested, times
-from packages import needs_runtime
+from packages import needs_runtime, run
 from regenerate_voices import SOUNDS, WORDS
 
 pytestmark = needs_runtime
@@ -427,8 +426,7 @@ def test_what_others_said_is_kept_within_bounds(monkeypatch: pytest.MonkeyPatch)
 def test_a_voice_needs_no_numpy() -> None:
     script = ("import sys\nsys.modules['numpy'] = None\nimport labial\nvoice = labial.Voice()\n"
               "voice.feed({'word': 'hum', 'start': 0, 'end': 1})\nprint(len(voice.played(0.5)))\n")
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout == "26\n"
+    assert run(sys.executable, "-c", script) == "26\n"
 
 
 def test_a_voice_that_says_nothing_is_done() -> None:
