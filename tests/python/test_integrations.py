@@ -163,21 +163,6 @@ def test_an_answer_right_after_an_interruption_is_joined(cancelled: float, gap: 
     assert largest_step(found) < STEP and found[first : first + 30] == heard(babble(1.0))[8:38]
 
 
-def test_lips_meet_in_time_after_an_interruption() -> None:
-    """They are those of an answer where it closes them 0.12 s after it begins, within the fade."""
-    sound = babble(1.0)[2 * RATE // 10 :]
-    with Lips() as lips:
-        lips.begin_sound(0.0)
-        lips.sound(babble(2.0), RATE)
-        found = shown(lips, 0.0, 0.36)
-        lips.cancel(200)
-        lips.begin_sound(0.36)
-        lips.sound(sound, RATE)
-        found += shown(lips, 0.36, 0.7)
-    apart = [-one[3] - one[4] + other[3] + other[4] for one, other in zip(found[18:], heard(sound))]
-    assert apart[0] > 400 and apart[4] > 100 and not apart[6] and largest_step(found) < STEP
-
-
 @pytest.mark.parametrize("ahead", range(6))
 def test_lips_meet_in_time_on_the_way_to_another_sound(ahead: int) -> None:
     """Lips that are wide apart meet within three frames of a p, b or m, where the way there takes eight."""

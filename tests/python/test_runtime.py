@@ -74,18 +74,6 @@ def test_another_library_is_refused(path: str, complaint: str) -> None:
 # ---- Streams
 
 
-def test_the_manuals_program() -> None:
-    """What README and docstrings show: phonemes, a laugh, frames with numbers from 0, and nothing after them."""
-    with labial.Stream() as stream:
-        stream.push("HH", 70)
-        stream.laugh(1.5, 0.7)
-        stream.end()
-        frames = list(stream)
-        assert [frame.number for frame in frames] == list(range(79 + 12))  # 1.57 s at 50 frames per second, and rest
-        assert all(len(frame.faps) == 13 and all(isinstance(value, int) for value in frame.faps) for frame in frames)
-        assert stream.done and next(stream, None) is None and stream.fps == 50
-
-
 def test_any_number_of_phonemes_is_held() -> None:
     """More than the library's queue, and many times what is forgotten at a time; latency counts them all."""
     with labial.Stream(exact=True) as stream:

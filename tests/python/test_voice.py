@@ -115,26 +115,6 @@ def test_a_face_comes_to_rest_while_the_clock_stands() -> None:
         assert voice.done and voice.cancelled
 
 
-def test_a_face_comes_to_rest_at_the_end_while_the_clock_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A clock that is the sound stops with it: then time passes behind :meth:`finish`, once the clock stood a while."""
-    passed = 100.0
-    monkeypatch.setattr("labial.runtime.voice.time.monotonic", lambda: passed)
-    with labial.Voice() as voice:
-        voice.push("AA", 0.0, 1.0)
-        voice.finish()
-        played(voice, 0, 0.8)
-        passed += 5.0
-        assert voice.played(0.8) == [] and not voice.done  # a player that waits for sound
-        stands = played(voice, 0.82, 0.96)[-1]
-        shown: List[Tuple[int, ...]] = []
-        for _ in range(60):
-            passed += 0.0101
-            shown += [frame.faps for frame in voice.played(0.96)]
-            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.1)
-        assert shown[0] != stands and shown[-1] == (0,) * 13
-        assert voice.time == 0.98
-
-
 def test_lips_that_come_to_rest_at_the_end_do_not_part_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those of agents ease wherever a clock stands, a little later."""
     passed = 100.0
