@@ -20,6 +20,7 @@ from labial.reference.shape import Choice, add_kernels, choose, knot_shares, nei
 from labial.reference.stream import synthesise, targets
 from labial.reference.tables import FloatTables
 from labial.tables.model import mean_pose, widened
+from labial.train import shapes as mixing
 from labial.train.expression import AMPLITUDE, floors, gains
 from labial.train.kernels import (
     PAIR_COUNT,
@@ -32,25 +33,6 @@ from labial.train.kernels import (
     tapped,
 )
 from labial.train.recordings import Recording
-from labial.train.shapes import (
-    DURATION,
-    LOG_FLOOR,
-    MINIMUM_SAMPLES,
-    REGULARISATION,
-    SAMPLES_PER_COMPONENT,
-    Samples,
-    ShapeTables,
-    back_off,
-    climb,
-    component_limit,
-    corpus_scale,
-    fit_context,
-    fit_mixture,
-    log_joint,
-    log_normal,
-    maximise,
-    shape_tables,
-)
 from labial.train.workers import Workers
 from models import random_model, without_floors
 
@@ -66,17 +48,18 @@ def two_clusters(rng: np.random.Generator, count: int) -> np.ndarray:
 def test_density_equals_scikit_learns():
     # Catches a mean or covariance that is not scaled back to FAP and seconds, or scaled twice.
     vectors = two_clusters(np.random.default_rng(1), 200)
-    scale = corpus_scale(vectors)
-    mixture = fit_mixture(vectors, scale, 3, seed=4)
-    oracle = GaussianMixture(3, reg_covar=REGULARISATION, max_iter=200, random_state=4).fit(vectors / scale)
-    ours = logsumexp(np.log(mixture.weight) + log_normal(vectors, mixture.mean, mixture.covariance), axis=1)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_mixture(vectors, scale, 3, seed=4)
+    oracle = GaussianMixture(3, reg_covar=mixing.REGULARISATION, max_iter=200, random_state=4).fit(vectors / scale)
+    ours = logsumexp(np.log(mixture.weight) + mixing.log_normal(vectors, mixture.mean, mixture.covariance), axis=1)
     np.testing.assert_allclose(ours, oracle.score_samples(vectors / scale) - np.log(scale).sum(), rtol=1e-9)
 
 
 def test_equation_2_selects_by_duration():
     # Catches a selection that ignores the duration or mixes shapes up.
     vectors = two_clusters(np.random.default_rng(2), 300)
-    tables = shape_tables([fit_mixture(vectors, corpus_scale(vectors), 2, seed=0)], conditional=False)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 2, seed=0)
+    tables = mixing.shape_tables([mixture], conditional=False)
     zero = np.zeros(2, dtype=np.int64)
     selected = shapes(tables, choose(tables, zero, np.array([0.06, 0.20]), zero, zero, soft=False))
     np.testing.assert_allclose(selected[0], np.linspace(150, -300, 13), atol=8)
@@ -89,23 +72,23 @@ def test_slope_recovers_a_linear_law():
     duration = rng.normal(0.12, 0.03, 4000)
     law = np.linspace(-900, 900, 13)  # FAP per second
     vectors = np.column_stack([40 + law * duration[:, None] + rng.normal(0, 10, (4000, 13)), duration])
-    mixture = fit_mixture(vectors, corpus_scale(vectors), 1, seed=0)
-    tables = shape_tables([mixture], conditional=True)
-    np.testing.assert_allclose(tables.slope[0], law / (1 + REGULARISATION), atol=25)
-    published = shape_tables([mixture], conditional=False)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 1, seed=0)
+    tables = mixing.shape_tables([mixture], conditional=True)
+    np.testing.assert_allclose(tables.slope[0], law / (1 + mixing.REGULARISATION), atol=25)
+    published = mixing.shape_tables([mixture], conditional=False)
     assert not published.slope.any()
 
 
 def test_few_samples_get_few_components():
     # Catches a mixture with more components than samples can tell apart, or none at all.
-    assert component_limit(5 * SAMPLES_PER_COMPONENT, 5) == 5
-    assert component_limit(2 * SAMPLES_PER_COMPONENT - 1, 5) == 1
-    assert component_limit(1, 5) == 1
-    vectors = two_clusters(np.random.default_rng(5), MINIMUM_SAMPLES)
-    mixture = fit_mixture(vectors, corpus_scale(vectors), 5, seed=0)
+    assert mixing.component_limit(5 * mixing.SAMPLES_PER_COMPONENT, 5) == 5
+    assert mixing.component_limit(2 * mixing.SAMPLES_PER_COMPONENT - 1, 5) == 1
+    assert mixing.component_limit(1, 5) == 1
+    vectors = two_clusters(np.random.default_rng(5), mixing.MINIMUM_SAMPLES)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 5, seed=0)
     assert len(mixture.weight) == 1 and np.linalg.eigvalsh(mixture.covariance[0]).min() > 0
     same = np.repeat(vectors[:1], 40, axis=0)  # repeated vectors have no spread
-    assert np.linalg.eigvalsh(fit_mixture(same, corpus_scale(vectors), 2, seed=0).covariance).min() > 0
+    assert np.linalg.eigvalsh(mixing.fit_mixture(same, mixing.corpus_scale(vectors), 2, seed=0).covariance).min() > 0
 
 
 def test_back_off_from_class_to_substitute():
@@ -114,7 +97,7 @@ def test_back_off_from_class_to_substitute():
     counts = np.zeros(len(labels), dtype=np.int64)
     for label, count in {"SIL": 50, "P": 40, "B": 3, "AA": 30, "T": 12}.items():
         counts[labels.index(label)] = count
-    plan = back_off(counts, SPEECH)
+    plan = mixing.back_off(counts, SPEECH)
     assert plan.members[labels.index("P")] == (labels.index("P"),)
     assert set(plan.members[labels.index("B")]) == {labels.index("P"), labels.index("B")}
     assert plan.pooled["B"] == plan.pooled["M"] == "bilabial"
@@ -131,7 +114,7 @@ def test_a_small_corpus_closes_no_vowel():
     counts = np.zeros(len(labels), dtype=np.int64)
     for label, count in {"SIL": 12, "B": 13, "AH": 2, "EH": 8, "T": 7, "N": 4, "AA": 3, "IY": 5, "F": 4}.items():
         counts[labels.index(label)] = count
-    plan = back_off(counts, SPEECH)
+    plan = mixing.back_off(counts, SPEECH)
     assert {plan.substitutes[label] for label in ("AA", "AE", "IY", "UW", "OW", "ER", "HH")} == {"AH", "EH"}
     assert {plan.substitutes[label] for label in ("K", "G", "S", "R", "CH")} == {"T", "N"}
     assert not {"P", "B", "M", "F", "V"} & set(plan.substitutes.values())
@@ -140,7 +123,7 @@ def test_a_small_corpus_closes_no_vowel():
 def test_an_empty_corpus_is_refused():
     # Catches an error from deep inside a library instead of one that says what is wrong.
     with pytest.raises(LabialError, match="samples"):
-        back_off(np.zeros(len(SPEECH.phonemes), dtype=np.int64), SPEECH)
+        mixing.back_off(np.zeros(len(SPEECH.phonemes), dtype=np.int64), SPEECH)
 
 
 CLASSES = 6
@@ -157,9 +140,9 @@ def test_joint_is_the_product_of_its_parts():
     # Catches a term that is left out or looked up in the wrong table.
     rng = np.random.default_rng(0)
     vectors, previous, following = planted(rng, 60)
-    samples = Samples(vectors / corpus_scale(vectors), previous, following, CLASSES)
-    mixture = maximise(samples, rng.dirichlet(np.ones(3), 60))
-    joint = log_joint(samples, mixture)
+    samples = mixing.Samples(vectors / mixing.corpus_scale(vectors), previous, following, CLASSES)
+    mixture = mixing.maximise(samples, rng.dirichlet(np.ones(3), 60))
+    joint = mixing.log_joint(samples, mixture)
     for n, c in ((0, 0), (17, 2), (59, 1)):
         expected = np.log(mixture.weight[c])
         expected += multivariate_normal(mixture.mean[c], mixture.covariance[c]).logpdf(samples.vectors[n])
@@ -172,8 +155,8 @@ def test_em_never_falls():
     rng = np.random.default_rng(1)
     for count, components in ((20, 3), (150, 5), (600, 4)):
         vectors, previous, following = planted(rng, count)
-        samples = Samples(vectors / corpus_scale(vectors), previous, following, CLASSES)
-        _, history = climb(samples, rng.dirichlet(np.ones(components), count))
+        samples = mixing.Samples(vectors / mixing.corpus_scale(vectors), previous, following, CLASSES)
+        _, history = mixing.climb(samples, rng.dirichlet(np.ones(components), count))
         assert len(history) > 3
         assert (np.diff(history) > -1e-8 * abs(history[-1])).all()
 
@@ -182,9 +165,9 @@ def test_recovers_a_planted_dependence():
     # Catches context tables that are swapped (previous for next), transposed or without effect on the selection.
     rng = np.random.default_rng(2)
     vectors, previous, following = planted(rng, 800)
-    scale = corpus_scale(vectors)
-    mixture = fit_context(fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
-    tables = shape_tables([mixture], conditional=True)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_context(mixing.fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
+    tables = mixing.shape_tables([mixture], conditional=True)
     asked = np.arange(CLASSES)
     zero = np.zeros(CLASSES, dtype=np.int64)
     for soft in (False, True):
@@ -199,13 +182,13 @@ def test_tables_are_distributions_above_the_floor():
     rng = np.random.default_rng(3)
     vectors, previous, following = planted(rng, 3000)
     following[:] = 1  # never any other class
-    scale = corpus_scale(vectors)
-    mixture = fit_context(fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_context(mixing.fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
     for table in (mixture.log_previous, mixture.log_next):
-        assert table.min() >= LOG_FLOOR - 1e-12
+        assert table.min() >= mixing.LOG_FLOOR - 1e-12
         np.testing.assert_allclose(np.exp(table).sum(axis=1), 1)
     assert (mixture.log_next[:, 1] > -0.02).all()
-    assert (mixture.covariance[:, DURATION, DURATION] > 0).all()
+    assert (mixture.covariance[:, mixing.DURATION, mixing.DURATION] > 0).all()
 
 
 # ---- Closures and amplitude ------------------------------------------------------------------------------------------
@@ -313,11 +296,11 @@ PHONEMES = len(CLASS)
 FPS = 50
 
 
-def tables() -> ShapeTables:
+def tables() -> mixing.ShapeTables:
     """One component per phoneme, of 100 ms +- 20 ms."""
     zero = np.zeros((PHONEMES, 13))
     none = np.zeros((PHONEMES, 0))
-    return ShapeTables(
+    return mixing.ShapeTables(
         component_count=np.ones(PHONEMES, dtype=np.int64),
         log_weight=np.zeros(PHONEMES),
         duration_mean=np.full(PHONEMES, 0.10),
@@ -347,7 +330,7 @@ def fitted_to(material, stand_in, penalties: Penalties, pair_count: int = PAIR_C
     return fit_kernels(asked, material, choice_of(material))
 
 
-def moved(item: Recording, given: ShapeTables, kernel: np.ndarray) -> np.ndarray:
+def moved(item: Recording, given: mixing.ShapeTables, kernel: np.ndarray) -> np.ndarray:
     shape = np.repeat(shapes(given, choice_of([item])), item.length, axis=0)
     return add_kernels(shape, item.phoneme_at(), kernel, lags(FPS), 0)
 

@@ -264,18 +264,13 @@ def test_malformed_messages_change_nothing(form: Optional[str], message: Any, pr
 
 
 @pytest.mark.parametrize("form, message, problem", [
-    (None, {"word": "a", "start": 2, "end": 1}, "'a' ends at 1 s, before its start 2 s"),
-    (None, {"word": "a", "start": 2, "end": 100000}, "more than a day"),
     (None, {"word": "a", "start": 2, "end": 4000}, "more than an hour"),
     (None, {"word": "a" * 1001, "start": 2, "end": 3}, "a text of 1001 characters"),
-    (None, {"word": "a", "start": "x", "end": 3}, "'start' is x, not a number"),
     (None, {"word": "a", "start": -1, "end": 3}, "not a number from 0 on"),
     (None, {"word": "a", "start": 0, "end": None}, "'end' is null, not a number from 0 on"),
     (None, '{"word": "hum", "start": 0.1, "end": 0.5}\n{"word": ', "not JSON"),
     ("azure", {"viseme_id": 77, "audio_offset": 0}, "no viseme is called '77'"),
-    ("cartesia", {"word_timestamps": {"words": [1], "start": [0], "end": [1]}}, "is 1, not text"),
     ("cartesia", {"word_timestamps": {"words": ["a"], "start": [0, 1], "end": [1]}}, "are not of one length"),
-    ("elevenlabs", {"alignment": {"chars": ["a"]}}, "no field"),
     ("kokoro-fastapi", {"timestamps": [{"word": "hum", "start_time": 0.1, "end_time": 0.5},
                                        {"word": ",", "start_time": 0.5, "end_time": 0.49}]}, "before its start"),
 ])  # fmt: skip
