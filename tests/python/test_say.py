@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import queue
-import random
 import subprocess
 import threading
 from itertools import accumulate
@@ -24,7 +23,7 @@ from labial.see.motion import read_bands
 from models import lab
 from packages import SOURCE, needs_runtime
 from test_hearing import voice
-from test_timings import FILES, PHRASE, SEEDS, SENTENCE, damaged
+from test_timings import PHRASE, SEEDS, SENTENCE
 
 HEADER = "time,fap3,fap16,fap17,fap51,fap52,fap53,fap54,fap55,fap56,fap57,fap58,fap59,fap60"
 FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
@@ -161,16 +160,6 @@ def test_times_of_another_unit_are_asked_about(text: str, asked: str) -> None:
     done = say(text)
     assert done.returncode == 0
     assert done.stderr.decode() == (f"labial-say: warning: {asked}: is the unit of time right?\n" if asked else "")
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_damaged_files_are_motion_or_an_error(name: str) -> None:
-    """Bytes that are no text, or hardly any, end in motion or an error with its line, not in a crash."""
-    chance = random.Random(name)
-    for number in range(8):
-        done = say(damaged(FILES[name], chance) if number else bytes(chance.choices(range(256), k=4096)))
-        assert done.returncode in ((0, 1) if number else (1,))
-        assert not done.returncode or done.stderr.splitlines()[-1].startswith(b"labial-say: line ")
 
 
 @pytest.mark.parametrize("text", ["", "\n", " \r\n\n", "; nothing\n"])

@@ -271,6 +271,7 @@ def test_malformed_messages_change_nothing(form: Optional[str], message: Any, pr
     (None, '{"word": "hum", "start": 0.1, "end": 0.5}\n{"word": ', "not JSON"),
     ("azure", {"viseme_id": 77, "audio_offset": 0}, "no viseme is called '77'"),
     ("cartesia", {"word_timestamps": {"words": ["a"], "start": [0, 1], "end": [1]}}, "are not of one length"),
+    ("elevenlabs", {"alignment": {"chars": ["a"]}}, "no field"),
     ("kokoro-fastapi", {"timestamps": [{"word": "hum", "start_time": 0.1, "end_time": 0.5},
                                        {"word": ",", "start_time": 0.5, "end_time": 0.49}]}, "before its start"),
 ])  # fmt: skip
