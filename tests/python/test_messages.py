@@ -29,6 +29,8 @@ from messages import SAMPLES
 from packages import CC, SOURCE, needs_runtime, run
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
+#: An object of Gradium's client has the fields of another service, without values, and no type.
+GRADIUM = {"text": "go", "start_s": 0.5, "stop_s": 0.75, "client_req_id": None, "stream_id": None}
 
 
 def told(*messages: Any) -> List[Tuple[str, float, Any]]:
@@ -113,6 +115,7 @@ class _Derived:
     f"id: 7\nevent: word\ndata: {json.dumps(GO)}\n\n".encode(), f"retry: 9\ndata: {json.dumps(GO)}\n\n".encode(),
     f"event: word\nid: 7\ndata: {json.dumps(GO)}\n\n: waits\ndata: [DONE]\n\n", f"{{}}\n{json.dumps(GO)}\n",
     _Word("go", 0.5, 0.75), [_Word("go", 0.5, 0.75)], namedtuple("Word", GO)(**GO), _Event(),
+    namedtuple("TextWithTimestamps", GRADIUM)(**GRADIUM),
     *(_Dumps(name, GO) for name in ("model_dump", "to_dict", "dict")),
     {"text": "go", "audio_offset": 5_000_000, "duration": timedelta(milliseconds=250)},
     {"word_timestamps": _Dumps("model_dump", {"words": ["go"], "start": [0.5], "end": [0.75]})},
@@ -124,15 +127,9 @@ def test_what_users_hold(message: Any) -> None:
     assert told(message) == [("go", 0.5, 0.75)]
 
 
-def test_an_object_of_gradiums_client_is_read() -> None:
-    """It has the fields of another service, without values, and no type."""
-    fields = {"text": "go", "start_s": 0.5, "stop_s": 0.75, "client_req_id": None, "stream_id": None}
-    assert told(namedtuple("TextWithTimestamps", fields)(**fields)) == [("go", 0.5, 0.75)]
-    assert told({**fields, "stop_s": None}) == [("go", 0.5, None)]
-
-
-def test_a_time_of_zero_may_be_missing() -> None:
-    """As in the JSON of protobuf, with which Google answers."""
+def test_times_may_be_missing() -> None:
+    """An end that is not known; 0 in the JSON of protobuf, with which Google answers."""
+    assert told({**GRADIUM, "stop_s": None}) == [("go", 0.5, None)]
     found = told({"timepoints": [{"markName": "go"}, {"markName": "on", "timeSeconds": 0.5}]})
     assert [(text, start) for text, start, _ in found] == [("go", 0.0), ("on", 0.5)]
 

@@ -12,7 +12,7 @@ import random
 import shutil
 import sys
 import time
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import pytest
 
@@ -130,15 +130,16 @@ def test_lips_that_come_to_rest_at_the_end_do_not_part_again(monkeypatch: pytest
         assert lips.done
 
 
-def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
-    async def run(voice: labial.Voice) -> List[labial.Frame]:
-        begin = time.monotonic()
-        return [frame async for frame in voice.follow(lambda: min(time.monotonic() - begin, 0.3))]
+async def followed(voice: labial.Voice, clock: Callable[[], Optional[float]]) -> List[labial.Frame]:
+    return [frame async for frame in voice.follow(clock)]
 
+
+def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
     with labial.Voice() as voice:
         voice.push("AA", 0.0, 0.3)
         voice.finish()
-        frames = asyncio.run(asyncio.wait_for(run(voice), 20))
+        begin = time.monotonic()
+        frames = asyncio.run(asyncio.wait_for(followed(voice, lambda: min(time.monotonic() - begin, 0.3)), 20))
         assert frames[-1].faps == (0,) * 13 and frames[-1].number == 15
 
 
@@ -178,11 +179,7 @@ def test_lips_close_in_long_texts_without_blanks(language: str, text: str, close
 
 def test_follow_waits_for_a_late_clock_and_ends() -> None:
     """An asynchronous loop: nothing while the sound has not begun, then each frame once, until all is shown."""
-    looks: List[Optional[float]] = [None, None, *(k * 0.03 for k in range(200))]
-
-    async def run(voice: labial.Voice, clock: Iterable[Optional[float]]) -> List[labial.Frame]:
-        left = iter(clock)
-        return [frame async for frame in voice.follow(lambda: next(left))]
+    looks: Iterator[Optional[float]] = iter([None, None, *(k * 0.03 for k in range(200))])
 
     async def closed(voice: labial.Voice) -> int:
         count = 0
@@ -205,7 +202,7 @@ def test_follow_waits_for_a_late_clock_and_ends() -> None:
             for word in WORDS:
                 voice.say(*word)
             voice.finish()
-            frames = asyncio.run(run(voice, looks))
+            frames = asyncio.run(followed(voice, lambda: next(looks)))
             assert voice.done
         assert asyncio.run(closed(labial.Voice())) == 30
     assert [frame.number for frame in frames] == list(range(140))
@@ -407,10 +404,7 @@ def test_a_voice_needs_no_numpy() -> None:
 
 def test_a_voice_that_says_nothing_is_done() -> None:
     """A service that fails before its first message: the loop ends though the sound never began."""
-    async def run(voice: labial.Voice) -> List[labial.Frame]:
-        return [frame async for frame in voice.follow(lambda: None)]
-
     with labial.Voice() as voice:
         assert not voice.done
         voice.finish()
-        assert voice.done and asyncio.run(run(voice)) == []
+        assert voice.done and asyncio.run(followed(voice, lambda: None)) == []
