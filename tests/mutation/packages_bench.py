@@ -39,11 +39,11 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "web/track.js": ("streams.test.mjs", "test_npm.py"),
     "web/stream.js": ("streams.test.mjs", "conformance.test.mjs", "test_npm.py"),
     "web/memory.js": ("streams.test.mjs", "conformance.test.mjs", "test_npm.py"),
-    "web/entries.js": ("words.test.mjs", "test_npm_words.py", "test_services.py"),
-    "web/services.js": ("words.test.mjs", "test_npm_words.py", "test_services.py"),
-    "web/words/voice.js": ("voices.test.mjs", "test_npm_words.py", "test_voice_sessions.py"),
-    "web/words/messages.js": ("voices.test.mjs", "words.test.mjs", "test_npm_words.py"),
-    "web/words/readers.js": ("words.test.mjs", "test_npm_words.py"),
+    "web/entries.js": ("words.test.mjs", "test_words_runtime.py", "test_services.py"),
+    "web/services.js": ("words.test.mjs", "test_words_runtime.py", "test_services.py"),
+    "web/words/voice.js": ("voices.test.mjs", "test_words_runtime.py", "test_voice_sessions.py"),
+    "web/words/messages.js": ("voices.test.mjs", "words.test.mjs", "test_words_runtime.py"),
+    "web/words/readers.js": ("words.test.mjs", "test_words_runtime.py"),
 }
 #: The packages of npm that have scripts, and the folders of their sources.
 PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing"}

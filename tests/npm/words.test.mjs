@@ -1,4 +1,4 @@
-// Words beside what tests/python/test_npm_words.py compares with Python: streams of words, messages as they arrive,
+// Words beside what tests/python/test_words_runtime.py compares with Python: streams of words, messages as they arrive,
 // numbers, memory, misuse.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";

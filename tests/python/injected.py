@@ -19,7 +19,6 @@ import shutil
 import signal
 import sys
 import types
-import wave
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
@@ -40,7 +39,7 @@ from labial.see import drawing
 from labial.tables.model import save
 from labial.tables.phones import drawn_streams
 from labial.tables.quantise import quantise
-from models import random_model, write_motion
+from models import random_model, write_motion, write_wav
 from test_record import talking
 from test_record import write as write_landmarks
 
@@ -214,9 +213,7 @@ def given() -> None:
     Path("face.toml").write_text(FACE)
     write_motion(Path("f.csv"), np.arange(40) / 50, 20 * np.sin(np.add.outer(np.arange(40), np.arange(13))))
     write_landmarks(Path(), "seen", landmarks=talking()[0])
-    with wave.open("a.wav", "wb") as sound:
-        sound.setparams((1, 2, 16000, 0, "NONE", ""))
-        sound.writeframes(bytes(64000))
+    write_wav(Path("a.wav"), np.zeros(32000))
 
 
 def lay(case: Case) -> None:

@@ -1,8 +1,8 @@
 """``labial fit``: avatars are read, their lips found, and a rig solved that shows what the FAPs mean.
 
 ``heads/ict_lips.csv`` has lip points of ICT-FaceKit's mean head, from light-stage scans, and what ARKit's shapes add to
-them (USC Institute for Creative Technologies, ``heads/LICENSE.ICT``). The sentences are those of test_mouths.py, which
-no rig was fitted to.
+them (USC Institute for Creative Technologies, ``heads/LICENSE.ICT``). The sentences are those of test_animation.py,
+which no rig was fitted to.
 """
 
 from __future__ import annotations

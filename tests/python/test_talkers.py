@@ -26,7 +26,7 @@ from labial.train.recordings import Recording, occurrences, recordings
 from labial.train.talkers import SHARED, fit_talkers, weights_of
 from models import write_episode, write_motion
 from packages import SOURCE
-from test_kernels import CLASS, FPS, PHONEMES, choice_of, episode, tables
+from test_shapes import CLASS, FPS, PHONEMES, choice_of, episode, tables
 from test_train import OPTIONS, motion_error, symmetric
 from test_train import episode as spoken
 
