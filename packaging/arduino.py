@@ -28,6 +28,11 @@ WITHOUT_LIBRARY = ("UnoJaw",)
 SHARED = (ROOT / "examples" / "talk", ROOT / "examples" / "faces", ROOT / "export" / "labial" / "bake")
 
 
+def _fits(header: Path) -> bool:
+    """Whether a sketch can use a model: the IDE has no options of the compiler, by which a larger one fits."""
+    return "#if LABIAL_HEAR_UNITS_MAX >=" not in header.read_text(encoding="utf-8")
+
+
 def properties(source: Source) -> str:
     """library.properties."""
     values = {
@@ -41,7 +46,7 @@ def properties(source: Source) -> str:
         "category": "Device Control",
         "url": source.url,
         "architectures": ",".join(ARCHITECTURES),
-        "includes": ",".join(["Labial.h", *(path.name for path in source.headers())]),
+        "includes": ",".join(["Labial.h", *(path.name for path in source.headers() if _fits(path))]),
         "license": "MIT AND CC-BY-4.0 AND BSD-2-Clause",
     }
     return "".join(f"{key}={value}\n" for key, value in values.items())

@@ -66,6 +66,12 @@ extern const labial_hear_model_t hear_ahead;
 /* The names of the classes; linked only when used. */
 extern const char *const hear_ahead_classes[HEAR_AHEAD_CLASSES];
 
+#else
+
+/* Any use is an error that says what the model needs. */
+#define hear_ahead hear_ahead_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_192
+#define hear_ahead_classes hear_ahead_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_192
+
 #endif
 
 #ifdef __cplusplus

@@ -133,6 +133,16 @@ def _limit(tables: HearingTables) -> Tuple[str, str]:
             f"#if LABIAL_HEAR_UNITS_MAX >= {tables.units}\n\n", "\n#endif\n")
 
 
+def _missing(tables: HearingTables) -> str:
+    """What a header has in a build without room for the model. All builds compile its source, so it is no error before
+    a program uses the model: then the compiler's message has the name that tells what is missing."""
+    if tables.units <= _UNITS_MAX:
+        return ""
+    return ("\n#else\n\n/* Any use is an error that says what the model needs. */\n" + "".join(
+        f"#define {name} {tables.name}_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_{tables.units}\n"
+        for name in (tables.name, f"{tables.name}_classes")))
+
+
 def header(tables: HearingTables) -> str:
     """NAME.h: the model's symbol, its workspace and its classes."""
     upper = tables.name.upper()
@@ -165,7 +175,7 @@ extern const labial_hear_model_t {tables.name};
 
 /* The names of the classes; linked only when used. */
 extern const char *const {tables.name}_classes[{upper}_CLASSES];
-{closes}
+{_missing(tables)}{closes}
 #ifdef __cplusplus
 }}
 #endif
