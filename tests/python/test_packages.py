@@ -252,6 +252,20 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
+    """A line that is longer than the stream's queue and the buffer of a board's serial line: every vowel opens the jaw,
+    and so does that of the next line. What is beyond the sketch's own limit is left out, and said so once."""
+    for count, least, most, said in ((60, 61, 61, []),
+                                     (200, 128, 150, ["too long: the rest of the line is left out"])):
+        text = "AA 200 M 100 " * count + ("\n" if said else "\nAA 200\n")
+        lines = lines_of("JawServo", 5000 + 300 * most, 0, 64, text=text)
+        assert [line for line in lines[3:] if not line.startswith("servo ")] == said
+        wide = np.array([int(line.split()[2]) > 100 for line in lines[3:] if line.startswith("servo ")])
+        assert least <= np.count_nonzero(wide[1:] > wide[:-1]) <= most and not wide[-50:].any()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) -> None:
     """The sketch that ``labial rig --calibrate`` writes: moves one servo at a time, within what servos take, and prints
     the lines of a description."""

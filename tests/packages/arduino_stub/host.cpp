@@ -1,9 +1,11 @@
 /*
  * host.cpp - runs a sketch on a host: one call of loop() per millisecond of a made-up clock, for as many milliseconds
  * as the first argument says; at the time that the second one says, if there is one, each button is pressed for 100 ms.
- * Standard input is the serial line; what the sketch prints, or does with what is connected, goes to standard output.
+ * Standard input is the serial line: all of it is there at once, or, with a third argument, it comes at 115,200 baud into
+ * a buffer of so many bytes, and what finds no place there is lost. What the sketch prints, or does with what is connected, goes to standard output.
  */
 #include <stdio.h>
+#include <string.h>
 
 #include "Arduino.h"
 #include "Avatar.h"
@@ -16,6 +18,8 @@ TwoWire Wire;
 m5::M5Unified M5;
 static unsigned long now = 0, end = 0, press = 0;
 static int peeked = EOF;
+static char buffer[256];
+static size_t buffered = 0, buffer_size = 0;
 
 static bool pressed()
 {
@@ -53,8 +57,23 @@ void HardwareSerial::begin(unsigned long, uint32_t, int, int)
 {
 }
 
+/* Moves what has come by now into the buffer. */
+static void receive()
+{
+    static unsigned long received = 0;
+    for (; received < now * 1152 / 100; received++) {
+        const int c = getchar();
+        if (c != EOF && buffered < buffer_size)
+            buffer[buffered++] = (char)c;
+    }
+}
+
 int HardwareSerial::available()
 {
+    if (buffer_size > 0) {
+        receive();
+        return (int)buffered;
+    }
     if (peeked == EOF)
         peeked = getchar();
     return peeked != EOF;
@@ -62,8 +81,16 @@ int HardwareSerial::available()
 
 int HardwareSerial::read()
 {
-    const int c = available() ? peeked : -1;
-    peeked = EOF;
+    int c = -1;
+    if (available() == 0)
+        return c;
+    if (buffer_size > 0) {
+        c = buffer[0];
+        memmove(buffer, buffer + 1, --buffered);
+    } else {
+        c = peeked;
+        peeked = EOF;
+    }
     return c;
 }
 
@@ -160,6 +187,7 @@ int main(int argc, char **argv)
 {
     end = argc > 1 ? strtoul(argv[1], NULL, 10) : 0;
     press = argc > 2 ? strtoul(argv[2], NULL, 10) : 0;
+    buffer_size = argc > 3 ? strtoul(argv[3], NULL, 10) % sizeof buffer : 0;
     setup();
     for (now++; now < end; now++)
         loop();
