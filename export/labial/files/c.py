@@ -23,16 +23,22 @@ _C_HEADERS = frozenset(
     setjmp signal stdalign stdarg stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib stdnoreturn string
     strings tgmath threads time uchar unistd wchar wctype""".split()
 )
+#: Headers of Arduino and of its usual libraries, which file systems without capitals do not tell from a file's.
+_ARDUINO_HEADERS = frozenset("arduino client esp esp32servo print printable serial servo spi stream wifi wire".split())
+#: The tables that the library comes with: only their own exports may write files of these names.
+OWN_TABLES = frozenset("hear_ahead hear_host hear_large hear_small laughter_synthetic speech_en words_en".split())
 
 
 def check_name(name: str, what: str = "model") -> None:
-    """Raises ModelError, which says `what` it names, unless `name` can be a global name in C and C++."""
+    """Raises ModelError, which says `what` it names, unless `name` can be a global name in C and C++, and NAME.h takes
+    no other header's place. Models and tables of words may have the names of the library's own, which they replace."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,47}", name) or "__" in name:
         raise ModelError(
             f"{name!r} is no name for a {what}: letters, digits and single underscores, a letter first, at most 48"
         )
     lower = name.lower()  # constants of the name, NAME_LABEL, are in capitals
-    if lower in _C_KEYWORDS or lower in _C_HEADERS or lower.startswith("labial"):
+    taken = _C_KEYWORDS | _C_HEADERS | _ARDUINO_HEADERS
+    if lower in taken or lower.startswith("labial") or (what in ("rig", "header") and lower in OWN_TABLES):
         raise ModelError(f"{name!r} is no name for a {what}: C, C++ or the library already uses it")
 
 
