@@ -359,18 +359,11 @@ int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values
     return labial_rig_rest(&rig, values);
 }
 
-int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, unsigned frames, int32_t *values,
-              int32_t *changes)
+int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+              unsigned frames, int32_t *values, int32_t *changes)
 {
     const labial_rig_t rig = { outputs, (uint16_t)count };
-    return labial_rig_apply_ahead(&rig, faps, (uint16_t)frames, values, changes);
-}
-
-int rig_show(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
-             int32_t *values)
-{
-    const labial_rig_t rig = { outputs, (uint16_t)count };
-    return labial_rig_apply_visemes(&rig, faps, shares, values);
+    return labial_rig_apply_visemes_ahead(&rig, faps, shares, (uint16_t)frames, values, changes);
 }
 
 void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,

@@ -130,15 +130,12 @@ FLAT(blend) int blend(unsigned intensity, unsigned words, const int16_t *speech,
 FLAT(rig_output) void rig_output(labial_rig_output_t *output, void *more, const int32_t *numbers);
 FLAT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count);
 
-/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_ahead()), or by a frame with the
- * shares of its sounds (labial_rig_apply_visemes()); those of a frame alone, `shares` null where they are not known. */
+/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_visemes_ahead()); those of a frame
+ * alone. `shares` are null where they are not known. */
 FLAT(rig_rest) int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values);
 FLAT(rig_apply)
-int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, unsigned frames, int32_t *values,
-              int32_t *changes);
-FLAT(rig_show)
-int rig_show(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
-             int32_t *values);
+int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
+              unsigned frames, int32_t *values, int32_t *changes);
 FLAT(rig_weigh)
 void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
                int32_t *values);

@@ -16,9 +16,9 @@ int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned c
                             LABIAL_FACE_SIZE(count, ahead));
 }
 
-void servos_frame(servos_t *servos, const int16_t *faps)
+int servos_frame(servos_t *servos, const int16_t *faps, const uint8_t *shares)
 {
-    labial_face_frame(&servos->face, 0, faps);
+    return labial_face_visemes(&servos->face, faps, shares);
 }
 
 int servos_values(servos_t *servos, const int32_t *wanted)

@@ -20,7 +20,7 @@ FLAT(servos_size) uint32_t servos_size(unsigned outputs, unsigned ahead);
 /* The outputs must stay where they are, and so must the face. */
 FLAT(servos_init)
 int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned count, unsigned ahead);
-FLAT(servos_frame) void servos_frame(servos_t *servos, const int16_t *faps);
+FLAT(servos_frame) int servos_frame(servos_t *servos, const int16_t *faps, const uint8_t *shares);
 FLAT(servos_values) int servos_values(servos_t *servos, const int32_t *wanted);
 FLAT(servos_tick) int servos_tick(servos_t *servos, int32_t *values);
 FLAT(servos_play) int servos_play(servos_t *servos);

@@ -89,14 +89,20 @@ int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned fram
 
 void labial_face_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
-    labial_face_t *const face = (labial_face_t *)user;
     (void)frame;
-    if (face_status(face) == LABIAL_OK && faps) {
+    (void)labial_face_visemes((labial_face_t *)user, faps, NULL);
+}
+
+int labial_face_visemes(labial_face_t *face, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares)
+{
+    const int result = !faps ? LABIAL_ERROR_NULL : face_status(face);
+    if (result == LABIAL_OK) {
         int32_t *const to = face_enter(face);
         unsigned i;
         for (i = 0; i < face->rig->count; i++)
-            to[i] = labial_rig_target(&face->rig->outputs[i], faps, NULL);
+            to[i] = labial_rig_target(&face->rig->outputs[i], faps, shares);
     }
+    return result;
 }
 
 int labial_face_values(labial_face_t *face, const int32_t *wanted)
@@ -223,7 +229,7 @@ int labial_face_tick(labial_face_t *face, int32_t *values)
             const int32_t last = *value;
             const uint32_t touch = face_see(face, i, rests ? rest : face_row(face, ROW_WANTED)[i],
                                             rests || !face->plays ? 0u : face->held, &sight);
-            *value = labial_rig_step(output, &sight, touch, last, *change, rests ? 0 : output->deadband);
+            *value = labial_rig_step(output, &sight, touch, last, *change);
             *change = labial_sub(*value, last);
         }
         values[i] = *value;

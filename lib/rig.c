@@ -162,10 +162,16 @@ static int32_t towards_closed(const labial_rig_output_t *output, int32_t wanted,
     return labial_rig_limited(output, wanted > high ? high : wanted);
 }
 
-static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wanted, int32_t deadband)
+static int is_below(int32_t change, int32_t deadband)
+{
+    return change < deadband && labial_sub(0, change) < deadband;
+}
+
+/* The next value within a limit of speed. What leads to rest is never too little. */
+static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wanted)
 {
     const int32_t change = labial_sub(wanted, last);
-    if (change < deadband && labial_sub(0, change) < deadband)
+    if (is_below(change, output->deadband) && wanted != labial_rig_resting(output))
         return last;
     if (output->slew > 0 && change > output->slew)
         return labial_add(last, output->slew);
@@ -187,8 +193,7 @@ int labial_rig_apply_visemes(const labial_rig_t *rig, const int16_t faps[LABIAL_
         return LABIAL_ERROR_NULL;
     for (i = 0; i < rig->count; i++) {
         const labial_rig_output_t *output = &rig->outputs[i];
-        values[i] = moved(output, labial_rig_limited(output, values[i]), labial_rig_target(output, faps, shares),
-                          output->deadband);
+        values[i] = moved(output, labial_rig_limited(output, values[i]), labial_rig_target(output, faps, shares));
     }
     return LABIAL_OK;
 }
@@ -268,7 +273,7 @@ static int32_t steer(labial_sight_t *sight, int32_t last, int32_t change, int32_
     least = labial_clamp(labial_sub(change, sight->acceleration), sight->speed);
     most = labial_clamp(labial_add(change, sight->acceleration), sight->speed);
     next = labial_sub(sight->wanted[0], last);
-    if (next < deadband && labial_sub(0, next) < deadband)
+    if (is_below(next, deadband) && sight->wanted[0] != sight->rest)
         next = 0;
     next = next < least ? least : next > most ? most : next;
     look_up(sight);
@@ -280,18 +285,17 @@ static int32_t steer(labial_sight_t *sight, int32_t last, int32_t change, int32_
 }
 
 /* The next value within limits of speed and acceleration. */
-static int32_t steered(const labial_rig_output_t *output, labial_sight_t *sight, int32_t last, int32_t change,
-                       int32_t deadband)
+static int32_t steered(const labial_rig_output_t *output, labial_sight_t *sight, int32_t last, int32_t change)
 {
     sight->rest = labial_rig_resting(output);
     sight->acceleration = labial_clamp(output->acceleration, LABIAL_RIG_VALUE_MAX);
     sight->speed =
         labial_clamp(output->slew > 0 ? output->slew : LABIAL_RIG_VALUE_MAX, LABIAL_RIG_SIGHT * sight->acceleration);
-    return labial_rig_limited(output, labial_add(last, steer(sight, last, change, deadband)));
+    return labial_rig_limited(output, labial_add(last, steer(sight, last, change, output->deadband)));
 }
 
 /* The next value within a limit of speed, on the way to `wanted`; lips touch in the frame `touch`. */
-static int32_t slewed(const labial_rig_output_t *output, int32_t wanted, uint32_t touch, int32_t last, int32_t deadband)
+static int32_t slewed(const labial_rig_output_t *output, int32_t wanted, uint32_t touch, int32_t last)
 {
     if (output->contact && output->slew > 0 && touch != LABIAL_RIG_NEVER) {
         int32_t room = 0;
@@ -299,18 +303,30 @@ static int32_t slewed(const labial_rig_output_t *output, int32_t wanted, uint32_
             room = labial_add(room, output->slew);
         wanted = towards_closed(output, wanted, room);
     }
-    return moved(output, last, wanted, deadband);
+    return moved(output, last, wanted);
 }
 
 int32_t labial_rig_step(const labial_rig_output_t *output, labial_sight_t *sight, uint32_t touch, int32_t last,
-                        int32_t change, int32_t deadband)
+                        int32_t change)
 {
-    return output->acceleration > 0 ? steered(output, sight, last, change, deadband)
-                                    : slewed(output, sight->wanted[0], touch, last, deadband);
+    return output->acceleration > 0 ? steered(output, sight, last, change)
+                                    : slewed(output, sight->wanted[0], touch, last);
+}
+
+/* The shares of the sounds of frame number k, null where they are not known. */
+static const uint8_t *shares_of(const uint8_t *shares, unsigned k)
+{
+    return shares ? shares + (size_t)LABIAL_VISEMES * k : NULL;
 }
 
 int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
                            int32_t *changes)
+{
+    return labial_rig_apply_visemes_ahead(rig, frames, NULL, count, values, changes);
+}
+
+int labial_rig_apply_visemes_ahead(const labial_rig_t *rig, const int16_t *frames, const uint8_t *shares,
+                                   uint16_t count, int32_t *values, int32_t *changes)
 {
     unsigned i, k;
     uint32_t touch = 0;
@@ -327,11 +343,12 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
         if (changes && output->acceleration > 0) {
             sight.count = count < LABIAL_RIG_SIGHT ? count : LABIAL_RIG_SIGHT;
             for (k = 0; k < LABIAL_RIG_SIGHT; k++)
-                sight.wanted[k] =
-                    k < sight.count ? labial_rig_target(output, frames + (size_t)LABIAL_CHANNELS * k, NULL) : 0;
-            values[i] = steered(output, &sight, last, changes[i], output->deadband);
+                sight.wanted[k] = k < sight.count ? labial_rig_target(output, frames + (size_t)LABIAL_CHANNELS * k,
+                                                                      shares_of(shares, k))
+                                                  : 0;
+            values[i] = steered(output, &sight, last, changes[i]);
         } else {
-            values[i] = slewed(output, labial_rig_target(output, frames, NULL), touch, last, output->deadband);
+            values[i] = slewed(output, labial_rig_target(output, frames, shares), touch, last);
         }
         if (changes)
             changes[i] = labial_sub(values[i], last);

@@ -17,16 +17,16 @@
  * Any source will do: a stream (labial/labial.h), hearing (labial/hear.h), lips beside the audio (labial/beside.h) and
  * baked motion by labial_face_values(). The source may end, starve, be cancelled, be initialised again or just stop.
  *
- * What holds after any calls in any order, with a rig that labial_rig_check() accepts:
+ * What holds after any calls in any order, with a rig that labial_rig_check() accepts. In 2, 3 and 4 a tick that only
+ * catches up (labial_face_due()), in which no output moves, does not count.
  *
  *   1. Every value is within its output's limits, from the first tick on.
  *   2. From one tick to the next no value changes by more than `slew`.
  *   3. The changes of two successive ticks differ by no more than `acceleration`.
  *   4. When no frame comes any more, every output is at rest, exactly, at most
  *      ahead + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(range, slew, acceleration) ticks later, and
- *      labial_face_tick() returns LABIAL_DONE; after a cancel, its own time stands for hold and ease. Ticks that only
- *      catch up (labial_face_due()) do not count. Where several of the last frames came between two ticks, it takes up
- *      to `ahead` ticks more.
+ *      labial_face_tick() returns LABIAL_DONE; after a cancel, its own time stands for hold and ease. Where several of
+ *      the last frames came between two ticks, it takes up to `ahead` ticks more.
  *   5. Where one frame comes before each tick, none is lost: frame k is what the outputs are on the way to `ahead` ticks
  *      after it came.
  *
@@ -110,9 +110,26 @@ int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned fram
 /*
  * Takes a frame: the callback of a stream or of hearing, with the face as its `user`. The frame's number does not matter.
  * Frames wait for their ticks, one each; of more than `ahead` + 1 the oldest are passed over, so that the face is never
- * later than that. A face that is not initialised takes none.
+ * later than that. A face that is not initialised takes none. Sounds are not known here: outputs with `visemes` need
+ * labial_face_visemes().
  */
 void labial_face_frame(void *face, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
+
+/*
+ * The same for a frame of which it is known what sounds it shows, so that outputs with `visemes` follow them: `shares` are
+ * LABIAL_VISEMES of them, as labial_visemes() gives them; NULL where they are not known. For a callback of the program's
+ * own:
+ *
+ *     static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
+ *     {
+ *         uint8_t shares[LABIAL_VISEMES];
+ *         labial_visemes(&stream, &speech_en, labial_arpabet_visemes, shares);
+ *         labial_face_visemes(&face, faps, shares);
+ *     }
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
+ */
+int labial_face_visemes(labial_face_t *face, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /*
  * Takes a frame whose outputs are known: `wanted` has a value for each, in the rig's units, as labial_beside_value() and

@@ -16,7 +16,8 @@
  *              + visemes[0] * share[0] + ... + visemes[14] * share[14]   where shares of sounds are known, rounded
  *     target = curve(linear), or linear without a curve                  within minimum .. maximum
  *     wanted = target + contact * (closed - target) for an output with `closed`; else the target
- *     value  = wanted, or as near to it as `slew` and `acceleration` allow; the previous value within `deadband`
+ *     value  = wanted, or as near to it as `slew` and `acceleration` allow; the previous value within `deadband` of it,
+ *              unless `wanted` is the value at rest
  *
  * Contact is 1 where the lips touch: up to an opening, -(FAP 51 + FAP 52), of LABIAL_RIG_TOUCHING. FAPs follow the
  * outer lips, which are slightly apart when the inner lips meet. From there contact falls to 0 at LABIAL_RIG_APART. So
@@ -100,7 +101,8 @@ typedef struct {
     int32_t slew;                     /* units per frame: largest change of the value; 0 for no limit */
     int32_t closed;                   /* units: the value where lips touch, minimum <= closed <= maximum; 0 without
                                        * `contact` */
-    int32_t deadband;                 /* units: changes smaller than this are skipped; 0 for none */
+    int32_t deadband;                 /* units: changes smaller than this are skipped, but for one to the value at rest;
+                                       * 0 for none */
     int32_t acceleration;             /* units per frame, per frame: largest difference between the changes of two
                                        * successive frames; 0 for no limit. An output that would take more than
                                        * LABIAL_RIG_SIGHT frames to reach `slew` stays slower */
@@ -197,6 +199,15 @@ int labial_rig_apply_visemes(const labial_rig_t *rig, const int16_t faps[LABIAL_
  */
 int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint16_t count, int32_t *values,
                            int32_t *changes);
+
+/*
+ * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives them,
+ * 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
+ *
+ * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
+ */
+int labial_rig_apply_visemes_ahead(const labial_rig_t *rig, const int16_t *frames, const uint8_t *shares,
+                                   uint16_t count, int32_t *values, int32_t *changes);
 
 /* Frames of a stream that are still to be shown. */
 typedef struct {

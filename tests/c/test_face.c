@@ -318,6 +318,32 @@ TEST(values_are_frames)
     }
 }
 
+/* An output that follows sounds does so within the same limits, and goes to rest like any other. */
+TEST(sounds_move_it)
+{
+    static const int16_t amounts[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = 128 };
+    static const int16_t faps[LABIAL_CHANNELS] = { 0 };
+    const uint8_t shares[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = 100 };
+    begin(60, 0, 0);
+    outputs[0].visemes = amounts;
+    outputs[0].contact = 0;
+    outputs[0].closed = 0;
+    outputs[0].neutral = JAW_REST;
+    assert_int_equal(labial_face_visemes(&face, faps, shares), LABIAL_OK);
+    assert_int_equal(tick(LABIAL_OK), JAW_REST + 60);
+    assert_int_equal(labial_face_visemes(&face, faps, shares), LABIAL_OK);
+    assert_int_equal(tick(LABIAL_OK), JAW_REST + 100);
+    assert_int_equal(labial_face_visemes(&face, faps, NULL), LABIAL_OK);
+    assert_int_equal(tick(LABIAL_OK), JAW_REST + 40);
+    for (unsigned i = 0; i < HOLD + EASE && labial_face_tick(&face, values) != LABIAL_DONE; i++)
+        assert_in_range(values[0], JAW_REST, JAW_REST + 40);
+    assert_int_equal(values[0], JAW_REST);
+    assert_int_equal(labial_face_visemes(&face, NULL, shares), LABIAL_ERROR_NULL);
+    assert_int_equal(labial_face_visemes(NULL, faps, shares), LABIAL_ERROR_NULL);
+    memset(&face, 0, sizeof face);
+    assert_int_equal(labial_face_visemes(&face, faps, shares), LABIAL_ERROR_STATE);
+}
+
 /* Outputs with limits see as far as labial_rig_apply_ahead() with the same frames. */
 TEST(look_ahead_is_that_of_the_rig)
 {
@@ -642,7 +668,7 @@ static void model_tick(int moves)
                     break;
                 }
         step = wanted - model.value[i];
-        if (!rests && fabs(step) < output->deadband)
+        if (fabs(wanted - rest) > 0 && fabs(step) < output->deadband)
             step = 0;
         if (output->slew > 0)
             step = limited(step, -output->slew, output->slew);

@@ -445,6 +445,59 @@ TEST(deadband_keeps_small_changes)
     assert_int_equal(moved(&output, 1500, 4), 1500);
 }
 
+/* A face that stops beside its rest would stay there until it speaks again. */
+TEST(deadband_does_not_keep_it_from_rest)
+{
+    for (int32_t acceleration = 0; acceleration < 3; acceleration++) {
+        labial_rig_output_t output = plain();
+        const labial_rig_t rig = { &output, 1 };
+        int16_t frames[2][LABIAL_CHANNELS] = { { 0 } };
+        int32_t value = 1502, change = 0;
+        output.deadband = 5;
+        output.acceleration = acceleration;
+        for (unsigned i = 0; i < 4; i++)
+            labial_rig_apply_ahead(&rig, frames[0], 2, &value, &change);
+        assert_int_equal(value, 1500);
+        frames[0][FAP3] = 4;
+        labial_rig_apply_ahead(&rig, frames[0], 1, &value, &change);
+        assert_int_equal(value, 1500);
+        assert_int_equal(moved(&output, 1498, 0), 1500);
+        output.contact = 1;
+        output.closed = 1497;
+        assert_int_equal(moved(&output, 1499, 0), 1497);
+    }
+}
+
+/* Sounds count in the frames ahead, too: a heavy tongue that sees the end of a sound stops in time, as one that follows
+ * the same way by FAPs. */
+TEST(sounds_ahead_equal_faps_ahead)
+{
+    static const int16_t amounts[LABIAL_VISEMES] = { [LABIAL_VISEME_TH] = 128 };
+    static const int16_t still[20][LABIAL_CHANNELS] = { { 0 } };
+    int16_t frames[20][LABIAL_CHANNELS] = { { 0 } };
+    uint8_t shares[20][LABIAL_VISEMES] = { { 0 } };
+    for (unsigned limits = 0; limits < 4; limits++) {
+        labial_rig_output_t output = plain(), tongue = plain();
+        const labial_rig_t faps = { &output, 1 }, sounds = { &tongue, 1 };
+        int32_t values[2] = { 1500, 1500 }, changes[2] = { 0, 0 }, most = 1500;
+        memset(tongue.weights, 0, sizeof tongue.weights);
+        tongue.visemes = amounts;
+        output.slew = tongue.slew = limits & 1u ? 20 : 0;
+        output.acceleration = tongue.acceleration = limits & 2u ? 6 : 0;
+        for (unsigned i = 0; i < 20; i++)
+            frames[i][FAP3] = shares[i][LABIAL_VISEME_TH] = i > 3 && i < 10 ? 100 : 0;
+        for (unsigned i = 0; i < 20; i++) {
+            const uint16_t left = (uint16_t)(20 - i);
+            assert_int_equal(labial_rig_apply_ahead(&faps, frames[i], left, &values[0], &changes[0]), LABIAL_OK);
+            assert_int_equal(labial_rig_apply_visemes_ahead(&sounds, still[i], shares[i], left, &values[1], &changes[1]),
+                             LABIAL_OK);
+            assert_int_equal(values[0], values[1]);
+            most = values[1] > most ? values[1] : most;
+        }
+        assert_in_range(most, 1520, 1600);
+    }
+}
+
 /* A sound output with every number anywhere in its range, small moves as likely as ones that saturate. */
 static labial_rig_output_t any_sound_output(void)
 {
@@ -512,7 +565,8 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
         value =
             floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
     last = limited(last, output->minimum, output->maximum);
-    if (fabs(value - last) < output->deadband)
+    const double rest = limited(output->contact ? output->closed : output->neutral, output->minimum, output->maximum);
+    if (fabs(value - last) < output->deadband && fabs(value - rest) > 0)
         return last;
     return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
 }

@@ -13,6 +13,7 @@ static labial_rig_output_t outputs[OUTPUTS];
 static labial_face_t face;
 static int32_t values[OUTPUTS], memory[ROOM];
 static int16_t faps[LABIAL_CHANNELS];
+static uint8_t shares[LABIAL_VISEMES];
 
 static int32_t read_output(const labial_rig_output_t *output)
 {
@@ -32,15 +33,17 @@ int32_t labial_rig_resting(const labial_rig_output_t *output)
 int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t frame[LABIAL_CHANNELS],
                           const uint8_t *shares)
 {
-    return frame[any_unsigned % LABIAL_CHANNELS] > 0 ? any_int32 : read_output(output);
+    return frame[any_unsigned % LABIAL_CHANNELS] > 0 || (shares && shares[any_unsigned % LABIAL_VISEMES] > 0)
+               ? any_int32
+               : read_output(output);
 }
 
 int32_t labial_rig_step(const labial_rig_output_t *output, labial_sight_t *sight, uint32_t touch, int32_t last,
-                        int32_t change, int32_t deadband)
+                        int32_t change)
 {
     static char sights[LABIAL_RIG_SIGHT];
     sights[sight->count - 1u] = 1; /* 1 .. LABIAL_RIG_SIGHT */
-    if (touch != LABIAL_RIG_NEVER && last == change && deadband > 0)
+    if (touch != LABIAL_RIG_NEVER && last == change)
         return sight->wanted[any_unsigned % LABIAL_RIG_SIGHT];
     return any_int ? any_int32 : read_output(output);
 }
@@ -50,9 +53,13 @@ static void call_anything(void)
     labial_face_t *const any = OR_NULL(labial_face_t *, &face);
     FILL(values);
     FILL(faps);
+    FILL(shares);
     switch (any_int) {
     case 0:
         labial_face_frame(any, any_uint32, OR_NULL(const int16_t *, faps));
+        break;
+    case 9:
+        labial_face_visemes(any, OR_NULL(const int16_t *, faps), OR_NULL(const uint8_t *, shares));
         break;
     case 1:
         labial_face_values(any, OR_NULL(const int32_t *, values));

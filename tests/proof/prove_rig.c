@@ -13,6 +13,7 @@ static labial_rig_curve_t curve;
 static int32_t values[OUTPUTS], changes[OUTPUTS];
 static int16_t visemes[LABIAL_VISEMES];
 static int16_t frames[FRAMES * LABIAL_CHANNELS];
+static uint8_t sounds[FRAMES * LABIAL_VISEMES];
 
 int main(void)
 {
@@ -33,6 +34,7 @@ int main(void)
     FILL(changes);
     FILL(faps);
     FILL(frames);
+    FILL(sounds);
     rig.outputs = OR_NULL(const labial_rig_output_t *, outputs);
     rig.count = (uint16_t)(any_uint16 % (OUTPUTS + 1u));
     labial_rig_check(OR_NULL(const labial_rig_t *, &rig));
@@ -42,9 +44,12 @@ int main(void)
                              OR_NULL(const uint8_t *, shares), OR_NULL(int32_t *, values));
     labial_rig_apply_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames), any_uint16,
                            OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
+    labial_rig_apply_visemes_ahead(OR_NULL(const labial_rig_t *, &rig), OR_NULL(const int16_t *, frames),
+                                   OR_NULL(const uint8_t *, sounds), any_uint16, OR_NULL(int32_t *, values),
+                                   OR_NULL(int32_t *, changes));
     FILL(sight.wanted);
     sight.count = 1u + any_unsigned % LABIAL_RIG_SIGHT;
-    labial_rig_step(&outputs[any_unsigned % OUTPUTS], &sight, any_uint32, any_int32, any_int32, any_int32);
+    labial_rig_step(&outputs[any_unsigned % OUTPUTS], &sight, any_uint32, any_int32, any_int32);
     delay.frames = OR_NULL(int16_t *, frames);
     delay.ahead = (uint16_t)(any_uint16 & 0x7fffu); /* all that `frames` have room for */
     delay.held = any_uint16;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 from typing import List, Optional, Sequence, Tuple
 
@@ -49,8 +50,12 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         table = convert(face)
         track.check_names(face)
         motion = read_track(source)
+        still = [output.name for output in face.outputs if output.visemes]
+        if still and motion.shares is None:
+            warnings.warn(f"{source.path}: frames do not tell their sounds, which {', '.join(still)} of {rig} "
+                          f"follow{'s' * (len(still) == 1)}; phoneme timings do", stacklevel=2)
         cut = None if parts is None else track.parts(motion.pauses, longest)
-        text = track.header(name, Path(source.path).name, face, table, motion.frames, cut)
+        text = track.header(name, Path(source.path).name, face, table, motion, cut)
         told = [f"part {number}: {part.begin / RATE:.2f} to {part.end / RATE:.2f} s"
                 for number, part in enumerate(cut or [])]
         files = {path: text, path.with_name(PLAYER): Path(__file__).with_name(PLAYER).read_text(encoding="ascii")}

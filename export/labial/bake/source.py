@@ -15,6 +15,7 @@ from labial.corpus.formats import SOUNDS, read_timings
 from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
 from labial.errors import DataError, LabialError, needs
+from labial.files.faps import CHANNELS
 from labial.files.frames import even, spans
 from labial.see.motion import read_motion
 from labial.tables.bundled import BY_KIND
@@ -87,6 +88,7 @@ class Motion(NamedTuple):
 
     frames: np.ndarray  #: (T, 13) FAPs, float64
     pauses: np.ndarray  #: (T,) bool: in a pause of `PAUSE` or more
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds, where the phonemes are known
 
 
 def read_track(source: Source) -> Motion:
@@ -102,6 +104,7 @@ def read_track(source: Source) -> Motion:
     from labial.reference import stream, synthesis
     from labial.reference.fade import delivered
     from labial.reference.tables import ExportedTables
+    from labial.rig.animation import with_shares
     from labial.tables.quantise import quantise
 
     model, _, phonemes = read_phonemes(source)
@@ -111,12 +114,13 @@ def read_track(source: Source) -> Motion:
         frames = synthesis.synthesise(model, phonemes)
     else:  # on the integer tables, so that choices at near ties are those of a board
         frames = stream.synthesise(ExportedTables(quantise(model, "baked")), phonemes)
-    frames = delivered(frames)
+    frames = with_shares(delivered(frames), [(model.phonemes[number], ms) for number, ms in phonemes], model.fps)
     frames = _at_rate(source.path, np.arange(len(frames)) / model.fps, frames)
     silence = model.phonemes.index(model.silence)
     ends = np.cumsum([milliseconds for _, milliseconds in phonemes]) * RATE / 1000.0
     at = np.minimum(np.searchsorted(ends, np.arange(len(frames)), side="right"), len(phonemes) - 1)
-    return Motion(frames, _long(np.array([number == silence for number, _ in phonemes])[at]))
+    pauses = _long(np.array([number == silence for number, _ in phonemes])[at])
+    return Motion(frames[:, :CHANNELS], pauses, frames[:, CHANNELS:])
 
 
 def _long(holds: np.ndarray) -> np.ndarray:
@@ -133,7 +137,7 @@ def _check_length(path: PathLike, seconds: float) -> None:
 
 
 def _at_rate(path: PathLike, times: np.ndarray, frames: np.ndarray) -> np.ndarray:
-    """Frames at 50 a second from time 0, the sound's beginning: as they are, or interpolated linearly. Before the first
+    """Frames, of any numbers, at 50 a second from time 0, the sound's beginning: as they are, or interpolated linearly. Before the first
     and behind the last the mouth stays as it is there."""
     if times[-1] < 0:
         raise DataError(path, None, f"its last time, {times[-1]:g} s, lies before 0, where the sound begins")

@@ -7,10 +7,10 @@ from typing import List, Optional, Sequence
 
 import numpy as np
 
-from labial.bake.source import RATE
+from labial.bake.source import RATE, Motion
 from labial.errors import DataError
 from labial.files.c import rows, written_by
-from labial.files.frames import spans, whole_faps
+from labial.files.frames import spans, whole_faps, whole_shares
 from labial.rig.description import GESTURES, Output, Rig, make_unit
 from labial.rig.table import TableOutput
 from labial.runtime.rig import Rig as Face
@@ -31,17 +31,21 @@ JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPE
                                           1900.0, False, 0.0, False, 1400.0),), "jaw")
 
 
-def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray) -> np.ndarray:
-    """(T, N) uint8: the rig's outputs for (T, 13) FAPs, 0 for an output's minimum and 255 for its maximum.
+def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,
+             shares: Optional[np.ndarray] = None) -> np.ndarray:
+    """(T, N) uint8: the rig's outputs for (T, 13) FAPs and, if known, (T, 15) shares of sounds, 0 for an output's
+    minimum and 255 for its maximum.
 
-    FAPs are rounded to integers and converted like ``labial_rig_apply_ahead`` with all frames in sight, from rest.
+    FAPs are rounded to integers and converted like ``labial_rig_apply_visemes_ahead`` with all frames in sight, from
+    rest.
     Raises DataError for limits further apart than `SPAN_MAX`.
     """
     for output in table:
         if output.maximum - output.minimum > SPAN_MAX:
             raise DataError(rig.path, None, f"output.{output.name}.maximum: more than {SPAN_MAX} {rig.unit.text} above "
                             "the minimum, too far apart for bytes")
-    values = np.array(Face.of(rig).play(whole_faps(frames), 65535), dtype=np.int64).reshape(len(frames), len(table))
+    played = Face.of(rig).play(whole_faps(frames), 65535, None if shares is None else whole_shares(shares))
+    values = np.array(played, dtype=np.int64).reshape(len(frames), len(table))
     low = np.array([output.minimum for output in table])
     span = np.array([max(output.maximum - output.minimum, 1) for output in table])
     result: np.ndarray = ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
@@ -78,12 +82,12 @@ def parts(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
     return found
 
 
-def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,
+def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], motion: Motion,
            cut: Optional[Sequence[Part]] = None) -> str:
     """NAME.h: the bytes, the constants of their units and the calls that play them. `source` is told in its comment.
     With `cut` the track has parts, one or more, each of which can be begun with."""
     upper, count = name.upper(), len(table)
-    data = as_bytes(rig, table, frames)
+    data = as_bytes(rig, table, motion.frames, motion.shares)
     about = (f"{name}.h - {len(data) / RATE:.1f} s of motion from {source}, {RATE} frames a second, a byte for each of "
              f"{count} output{'s' * (count > 1)}. Values are {rig.unit.text}.")
     places = ",\n".join(f"    {upper}_{output.name.upper()} = {number}" for number, output in enumerate(table))

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
 
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
-from labial.files.faps import CHANNELS
 from labial.files.grammar import finite, positive, read_text
 from labial.files.outputs import writing
 
@@ -77,29 +76,20 @@ class Limited:
     def __init__(self, rig: Description) -> None:
         from labial.runtime.rig import Rig
 
-        self._unit, self._ahead, self._shown = rig.unit, Rig.of(rig), Rig.of(rig)
-        self._follow = [number for number, output in enumerate(rig.outputs) if output.visemes]
+        self._unit, self._rig = rig.unit, Rig.of(rig)
 
     def __call__(self, frames: np.ndarray, shares: Optional[np.ndarray], first: int) -> Dict[str, np.ndarray]:
         """What ``animation.outputs`` gives, for frames from number `first` on, which go on from those before. They look
-        ahead as far as the last of them; outputs that follow sounds do not."""
+        ahead as far as the last of them."""
         import numpy as np
 
-        from labial.files.frames import whole_faps
+        from labial.files.frames import whole_faps, whole_shares
 
         if first == 0:  # another motion
-            self._ahead.rest()
-            self._shown.rest()
-        faps = whole_faps(frames)
-        found = np.array(self._ahead.play(faps, 65535), dtype=np.float64) / self._unit.scale
-        found = found.reshape(len(frames), len(self._ahead.outputs))
-        if self._follow and shares is not None:
-            weighed = np.rint(128 * shares).astype(int).tolist()
-            scale = 1.0 if self._unit.name == "weight" else self._unit.scale
-            shown = [list(self._shown.apply(faps[CHANNELS * k : CHANNELS * (k + 1)], visemes=row).values())
-                     for k, row in enumerate(weighed)]
-            found[:, self._follow] = np.array(shown).reshape(found.shape)[:, self._follow] / scale
-        return dict(zip(self._ahead.outputs, found.T))
+            self._rig.rest()
+        values = self._rig.play(whole_faps(frames), 65535, None if shares is None else whole_shares(shares))
+        found = np.array(values, dtype=np.float64).reshape(len(frames), len(self._rig.outputs)) / self._unit.scale
+        return dict(zip(self._rig.outputs, found.T))
 
 
 def format_of(options: argparse.Namespace) -> Format:

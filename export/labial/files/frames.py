@@ -40,6 +40,11 @@ def whole_faps(frames: np.ndarray) -> array[int]:
     return array("h", np.clip(np.floor(frames + 0.5), -32768, 32767).astype(np.int16).tobytes())
 
 
+def whole_shares(shares: np.ndarray) -> bytes:
+    """Shares of sounds (T, 15), 0 .. 1, as the library takes them: 15 T bytes, LABIAL_VISEME_ONE for 1."""
+    return np.rint(128 * np.clip(shares, 0, 1)).astype(np.uint8).tobytes()
+
+
 def opening(frames: np.ndarray) -> np.ndarray:
     """(..., T) the distance of the outer lips' middles in frames (..., T, 13 or more), FAP units."""
     result: np.ndarray = -(frames[..., _UPPER] + frames[..., _LOWER])

@@ -274,6 +274,8 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
     neutral = table.number(rest)
     if alone and "gain" in content:
         raise table.error("gain", "goes with from: how many units is a FAP unit?")
+    if alone and "full" not in content:
+        raise table.error("full", "is needed, the value that sounds move it to at most")
     if ("full" in content) == ("gain" in content):
         raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
                                   + (", not both" if "full" in content else ""))

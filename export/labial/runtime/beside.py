@@ -13,7 +13,7 @@ from typing import Iterable, List, NamedTuple, Optional, Union
 from labial.core.guard import whole
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
-from labial.runtime.rig import Faps, Rig, one_frame
+from labial.runtime.rig import Faps, Rig, one_frame, shares_of
 
 #: LABIAL_BESIDE_FORMAT and LABIAL_BESIDE_FPS of include/labial/beside.h.
 FORMAT, RATE = 2, 50
@@ -101,12 +101,14 @@ class Beside:
         self._next = number
 
     def push(self, frames: Iterable[Faps]) -> List[Packet]:
-        """Appends frames, 50 a second, of 13 FAPs each, and returns the packets that are full. A servo that has to
-        start early, because it is slow, sees as many frames ahead as are pushed at once."""
-        faps = array("h")
+        """Appends frames, 50 a second, and returns the packets that are full: frames of a stream, of hearing or of
+        :func:`labial.render`, or 13 FAPs each, which do not move outputs that follow sounds. A servo that has to start
+        early, because it is slow, sees as many frames ahead as are pushed at once."""
+        faps, shares = array("h"), bytearray()
         for frame in frames:
             faps.extend(one_frame(frame))
-        values = self._rig.play(faps, 65535)
+            shares += shares_of(frame)
+        values = self._rig.play(faps, 65535, shares)
         self._rows += map(self._bytes, zip(*[iter(values)] * len(self._rig.outputs)))
         self._next += len(faps) // CHANNELS
         found = []

@@ -10,7 +10,7 @@ from typing import Mapping, Tuple, Union
 from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import DONE, checked, library, memory
 from labial.errors import LabialError
-from labial.runtime.rig import Faps, Rig, Values, one_frame
+from labial.runtime.rig import Faps, Rig, Values, one_frame, shares_of
 
 #: LABIAL_FACE_AHEAD_MAX.
 AHEAD_MAX = 1000
@@ -61,9 +61,10 @@ class Face:
 
     @alone
     def frame(self, frame: Faps) -> None:
-        """Takes a frame of a stream or of hearing, or its 13 FAPs, integers of 16 bits."""
+        """Takes a frame of a stream, of hearing or of :func:`labial.render`; or its 13 FAPs, integers of 16 bits, which
+        do not move outputs that follow sounds."""
         numbers = one_frame(frame)  # which must outlive the call
-        self._library.servos_frame(self._address, numbers.buffer_info()[0])
+        checked(self._library.servos_frame(self._address, numbers.buffer_info()[0], shares_of(frame)), "frame")
         self._result = min(self._result, DONE - 1)
 
     @alone

@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextI
 
 from labial.core.guard import duration, expect_milliseconds
 from labial.core.lines import LAUGH
+from labial.core.library import VISEMES
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
@@ -15,6 +16,22 @@ from labial.runtime.words import offset
 
 #: A phoneme, by label or number, or a laugh (``<laugh:0.7>``), and how many milliseconds it lasts.
 Timing = Tuple[Union[str, int], float]
+
+
+class MotionFrame(Tuple[int, ...]):
+    """A frame of a motion: its 13 FAPs.
+
+    Attributes:
+        visemes: its shares of sounds, as :attr:`labial.Frame.visemes`.
+    """
+
+    visemes: Tuple[int, ...]
+
+    def __new__(cls, faps: Iterable[int], visemes: Iterable[int] = ()) -> MotionFrame:
+        """A frame."""
+        frame = super().__new__(cls, tuple(faps))
+        frame.visemes = tuple(visemes)
+        return frame
 
 
 class Motion(List[Tuple[int, ...]]):
@@ -34,7 +51,8 @@ class Motion(List[Tuple[int, ...]]):
 def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter: Optional[Model] = None,
            labels: str = "auto", nearest: bool = False, exact: bool = False) -> Motion:
     """All frames of an utterance at once: T tuples of 13 ints, FAP units, ``model.fps`` frames per second. They are a
-    list, which a notebook shows as a mouth that moves.
+    list, which a notebook shows as a mouth that moves. Each has the shares of its sounds as `visemes`, for faces that
+    show a tongue.
 
     `timings` are pairs of a phoneme, by label or number, and its milliseconds; the label ``<laugh>`` or ``<laugh:0.7>``
     is a laugh of that intensity. The other arguments, and the frames, are those of :class:`labial.Stream`: they begin
@@ -47,9 +65,10 @@ def render(timings: Iterable[Timing], *, model: Optional[Model] = None, laughter
         for place, timing in enumerate(timings, 1):
             longest = max(longest, _push(stream, place, timing))
         stream.end()
-        frames = stream.drain()
+        shares = bytearray()
+        frames = stream.drain(shares)
     expect_milliseconds(longest)
-    return Motion(zip(*[iter(frames)] * CHANNELS), stream.fps)
+    return Motion(map(MotionFrame, zip(*[iter(frames)] * CHANNELS), zip(*[iter(shares)] * VISEMES)), stream.fps)
 
 
 def _push(stream: Stream, place: int, timing: Any) -> float:

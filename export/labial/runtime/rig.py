@@ -9,7 +9,7 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, List, Protocol, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, List, NamedTuple, Optional, Protocol, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class HasFaps(Protocol):
-    """A frame, such as :class:`labial.Frame`."""
+    """A frame, such as :class:`labial.Frame`; it may have the shares of its sounds as `visemes`, too."""
 
     @property
     def faps(self) -> Sequence[int]:
@@ -59,12 +59,27 @@ def one_frame(frame: Faps) -> array[int]:
     return numbers
 
 
-def _frames_after(following: Iterable[Union[int, Faps]]) -> array[int]:
-    """The FAPs of frames, or FAPs that are one after the other already, in one row."""
+def shares_of(frame: Any) -> bytes:
+    """The 15 shares of a frame's sounds; zeros where they are not known. Raises LabialError for others than 15."""
+    shares = bytes(getattr(frame, "visemes", ()))
+    if len(shares) not in (0, VISEMES):
+        raise LabialError(f"a frame has {VISEMES} shares of sounds, not {len(shares)}")
+    return shares or bytes(VISEMES)
+
+
+class _Kept(NamedTuple):
+    """A copy of a frame."""
+
+    faps: array[int]
+    visemes: bytes
+
+
+def _frames_after(following: Iterable[Union[int, Faps]]) -> Tuple[array[int], bytes]:
+    """The FAPs of frames, or FAPs that are one after the other already, in one row; and the shares of their sounds."""
     items: List[Any] = list(following)
     if items and isinstance(faps_of(items[0]), Iterable):
-        return array("h", chain.from_iterable(map(one_frame, items)))
-    return _whole_faps(items)
+        return array("h", chain.from_iterable(map(one_frame, items))), b"".join(map(shares_of, items))
+    return _whole_faps(items), bytes(len(items) // CHANNELS * VISEMES)
 
 
 class Rig:
@@ -124,8 +139,7 @@ class Rig:
                             (ctypes.c_int32 * most)(*map(int, numbers)))
         checked(core.rig_check(*self._table), os.fspath(rig.path))
         self._values, self._changes = (ctypes.c_int32 * len(rows))(), (ctypes.c_int32 * len(rows))()
-        self._apply, self._show = core.rig_apply, core.rig_show
-        self._follows_sounds = any(row.visemes for row in rows)
+        self._apply = core.rig_apply
         self._guard = Guard(whole=True)  # held from updating the values until they are read
         self.rest()
 
@@ -155,55 +169,51 @@ class Rig:
     def apply(self, faps: Faps, following: Iterable[Union[int, Faps]] = (), *, visemes: Iterable[int] = ()) -> Values:
         """Applies one frame, or its 13 FAPs, integers of 16 bits; returns the values. `following` are the frames after
         it, or their FAPs in one list: with them a servo with a `closed` position starts early enough to be closed in p,
-        b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. `visemes` are the shares of the frame's
-        sounds, ``Frame.visemes``: outputs that follow them show a tongue, teeth and pressed lips, too. With such
-        outputs there are no limits of acceleration, and no frames that follow. :meth:`labial.Frame.rig` gives shares by
-        itself."""
-        numbers, ahead = one_frame(faps), _frames_after(following)
+        b, m (``labial_rig_apply_ahead``); `ahead()` stores them for a stream. Outputs that follow sounds show a tongue,
+        teeth and pressed lips, too, where frames bring the shares of their sounds, as those of a stream and of hearing
+        do; `visemes` are those of 13 FAPs, ``Frame.visemes``."""
+        numbers, (ahead, after) = one_frame(faps), _frames_after(following)
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")
-        shares = bytes(visemes)
-        if shares and (len(shares) != VISEMES or ahead):
-            raise LabialError(f"a frame has {VISEMES} shares of sounds, and they go with this frame alone, not "
-                              f"{len(shares)} and {len(ahead)} FAPs that follow")
-        return self._shown(numbers, shares) if shares and self._follows_sounds else self._moved(numbers + ahead)
+        given = bytes(visemes)
+        if len(given) not in (0, VISEMES):
+            raise LabialError(f"a frame has {VISEMES} shares of sounds, not {len(given)}")
+        return self._moved(numbers + ahead, (given or shares_of(faps)) + after)
 
     def ahead(self, frames: Iterable[Faps], count: int) -> Iterator[Values]:
         """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
         Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
-        waiting: Deque[array[int]] = deque()
+        waiting: Deque[_Kept] = deque()
         for frame in frames:
-            waiting.append(one_frame(frame))
+            waiting.append(_Kept(one_frame(frame), shares_of(frame)))
             if len(waiting) > count:
                 yield self.apply(waiting.popleft(), waiting)
         while waiting:
             yield self.apply(waiting.popleft(), waiting)
 
     @alone
-    def play(self, faps: array[int], sight: int) -> array[int]:
+    def play(self, faps: array[int], sight: int, shares: Union[bytes, bytearray, None] = None) -> array[int]:
         """Moves the face by T frames of 13 FAPs, 16 bits each, one after the other, each with up to `sight` frames in
         sight, itself included, 1 .. 65535: T times N numbers of 32 bits, all outputs of each frame in the unit's whole
-        numbers."""
+        numbers. `shares` are 15 of the sounds of each frame, if they are known."""
         first, count = faps.buffer_info()[0], len(faps) // CHANNELS
+        known = array("B", shares or b"")
+        at = known.buffer_info()[0]
         found = array("i")
         for frame in range(count):
             place = first + frame * CHANNELS * faps.itemsize
-            checked(self._apply(*self._table, place, min(sight, count - frame), self._values, self._changes))
+            sounds = at + frame * VISEMES if shares else None
+            checked(self._apply(*self._table, place, sounds, min(sight, count - frame), self._values, self._changes))
             found.extend(self._values)
         return found
 
     @alone
-    def _moved(self, numbers: array[int]) -> Values:
-        checked(self._apply(*self._table, numbers.buffer_info()[0], len(numbers) // CHANNELS, self._values,
+    def _moved(self, numbers: array[int], shares: bytes) -> Values:
+        checked(self._apply(*self._table, numbers.buffer_info()[0], shares, len(numbers) // CHANNELS, self._values,
                             self._changes))
-        return self.values
-
-    @alone
-    def _shown(self, numbers: array[int], shares: bytes) -> Values:
-        checked(self._show(*self._table, numbers.buffer_info()[0], shares, self._values))
         return self.values
 
     def __repr__(self) -> str:

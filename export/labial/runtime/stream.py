@@ -247,13 +247,16 @@ class Stream:
                      self._visemes())
 
     @alone
-    def drain(self) -> array[int]:
-        """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. ``labial.render`` makes
-        arrays of them."""
+    def drain(self, visemes: Optional[bytearray] = None) -> array[int]:
+        """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. The 15 shares of the
+        sounds of each (:attr:`Frame.visemes`) are appended to `visemes`. ``labial.render`` makes frames of them."""
         self._open()
         pieces, piece = array("h"), array("h", bytes(2 * 13 * _PIECE))
-        while count := self._run(piece.buffer_info()[0], _PIECE):
+        shares = array("B", bytes(0 if visemes is None else VISEMES * _PIECE))
+        while count := self._run(piece.buffer_info()[0], _PIECE, shares.buffer_info()[0] if shares else None):
             pieces += piece[: 13 * count]
+            if visemes is not None:
+                visemes += shares[: VISEMES * count].tobytes()
         return pieces
 
     @property
@@ -363,11 +366,12 @@ class Stream:
         """The shares of the frame that was delivered last."""
         return tuple(self._library.mouth_visemes(self._address)[:VISEMES])
 
-    def _run(self, frames: int, most: int) -> int:
-        """Writes the next frames, at most so many, to an address; returns their number, 0 if the stream waits."""
+    def _run(self, frames: int, most: int, shares: Optional[int] = None) -> int:
+        """Writes the next frames, at most so many, to an address, and their shares to another; returns their number, 0
+        if the stream waits."""
         while True:
             fed = self._feed()
-            count = checked(self._library.mouth_run(self._address, frames, None, most))
+            count = checked(self._library.mouth_run(self._address, frames, shares, most))
             if count or not fed:
                 self._number += count
                 self._done = not count and self._library.mouth_state(self._address) == DONE
