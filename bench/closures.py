@@ -93,7 +93,7 @@ def measure(said: Sequence[Said], described: Rig, sight: int) -> Tuple[float, fl
 
 def short_of_rest(said: Sequence[Said]) -> np.ndarray:
     """How far a jaw that only follows the opening stays above 1400 us in each p, b, m."""
-    described = replace(JAW, outputs=(replace(JAW.outputs[0], closed=None),))
+    described = replace(JAW, outputs=(replace(JAW.outputs[0], closed=None, slew=0.0),))
     found = []
     for item in said:
         values = np.array(Face.of(described).play(array("h", item.frames.astype(np.int16).tobytes()), 1))

@@ -67,21 +67,28 @@ def same_but_version(one: Path, other: Path) -> bool:
 
 PROGRAM = """\
 #include <stdio.h>
-#include "jaw.h"
+#include "labial/rig.h"
 #include "talk.h"
 #include "talk_phonemes.h"
 
 static labial_t stream;
 static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 static labial_player_t player;
-static int32_t pulse;
+static const labial_rig_output_t output = LABIAL_RIG_SERVO(1400, 1900, 60);
+static const labial_rig_t jaw = { &output, 1 };
+static int16_t ahead[LABIAL_CHANNELS * 13];
+static labial_rig_delay_t delay = { ahead, 12, 0 };
+static int32_t pulse, change;
+static unsigned shown;
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
-    const uint8_t *baked = talk_next(&player);
     (void)user;
-    labial_rig_apply(&jaw, faps, &pulse);
-    printf("%u %d %d\\n", (unsigned)frame, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
+    (void)frame;
+    if (labial_rig_delayed(&jaw, &delay, faps, &pulse, &change) == LABIAL_OK) {
+        const uint8_t *baked = talk_next(&player);
+        printf("%u %d %d\\n", shown++, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
+    }
 }
 
 int main(void)
@@ -95,6 +102,8 @@ int main(void)
         if (result == LABIAL_OK)
             result = labial_tick(&stream);
     }
+    while (delay.held > 0)
+        on_frame(NULL, 0, NULL);
     printf("end %d %d\\n", result, talk_next(&player) != NULL);
     return 0;
 }
@@ -117,11 +126,10 @@ def test_both_kinds_play_what_the_library_computes(tmp_path: Path, language: str
     if language == "c++" and not CXX:
         pytest.skip("no C++ compiler")
     (tmp_path / "main.c").write_text(PROGRAM)
-    faces = SOURCE / "examples" / "faces"
     models = SOURCE / "lib" / "models"
-    folders = [TALK, PLAYER.parent, faces, models, SOURCE / "include"]
+    folders = [TALK, PLAYER.parent, models, SOURCE / "include"]
     options = [CC, "-std=c99"] if language == "c" else [CXX, "-std=c++11", "-x", "c++"]
-    sources = [tmp_path / "main.c", faces / "jaw.c", models / "speech_en.c", *sorted((SOURCE / "lib").glob("*.c"))]
+    sources = [tmp_path / "main.c", models / "speech_en.c", *sorted((SOURCE / "lib").glob("*.c"))]
     run(*options, *warnings(language), *(f"-I{folder}" for folder in folders), *sources, "-o", tmp_path / "main")
     *lines, last = run(tmp_path / "main").splitlines()
     rows = np.array([[int(field) for field in line.split()] for line in lines])
@@ -143,6 +151,19 @@ def test_jaw_closes_where_lips_do_and_moves_with_the_sound() -> None:
     for shift in (-5, 5):
         moved_away = np.roll(track, shift)
         assert max(moved_away[a:b].min() for a, b, label in spans if label in ("P", "B", "M")) > 40
+
+
+@pytest.mark.parametrize("reach", [60, 90, 120])
+def test_common_servos_follow_the_jaw(reach: int) -> None:
+    """A servo that moves by so many microseconds a frame closes in every p, b, m, and opens nearly as far as it may."""
+    segments = [line.split() for line in (TALK / "talk.lab").read_text().splitlines()]
+    pulse, followed = 1400.0, []
+    for byte in data(TALK / "talk.h"):
+        pulse += np.clip(1400 + 500 * byte / 255 - pulse, -reach, reach)
+        followed.append(pulse)
+    closed = [min(followed[round(float(a) * 50) - 1:round(float(b) * 50) + 1]) for a, b, label in segments
+              if label in ("P", "B", "M")]
+    assert len(closed) == 7 and max(closed) <= 1410 and max(followed) > 1850
 
 
 @pytest.mark.slow
@@ -167,8 +188,39 @@ def test_frames_by_hand(tmp_path: Path) -> None:
     """25 frames a second from .04 s: the first pose is held before, every second frame lies between two, the last frame
     is held for as long as it lasts. 600 FAP units of opening are 255."""
     frames_file(tmp_path / "ramp.csv", [0.04, 0.08, 0.12], [0.0, 300.0, 600.0])
-    assert main(["bake", str(tmp_path / "ramp.csv"), "-o", str(tmp_path / "ramp.h")]) == 0
+    rig = SOURCE / "examples" / "faces" / "jaw.toml"
+    assert main(["bake", str(tmp_path / "ramp.csv"), "--rig", str(rig), "-o", str(tmp_path / "ramp.h")]) == 0
     assert data(tmp_path / "ramp.h") == [0, 0, 0, 64, 128, 191, 255, 255]
+    # Without a rig the jaw moves by 60 microseconds a frame.
+    assert main(["bake", str(tmp_path / "ramp.csv"), "-o", str(tmp_path / "ramp.h")]) == 0
+    assert data(tmp_path / "ramp.h") == [0, 0, 0, 31, 61, 92, 122, 153]
+
+
+def test_outputs_follow_sounds(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    """A tongue that stays at rest: it is out in TH; frames do not tell their sounds, and the command says so."""
+    (tmp_path / "face.toml").write_text('unit = "weight"\n[output.tongue]\nneutral = 0\nfull = 1\n'
+                                        "visemes = { TH = 1.0 }\n")
+    (tmp_path / "th.flite").write_text("pau:0.1 th:0.3 ih:0.5 th:0.7 pau:0.9\n")
+    options = ["--rig", str(tmp_path / "face.toml"), "-o", str(tmp_path / "th.h")]
+    assert main(["bake", str(tmp_path / "th.flite"), *options]) == 0
+    tongue = data(tmp_path / "th.h")
+    assert min(tongue[7:13]) > 240 and max(tongue[17:23]) < 60 and tongue[-1] == 0
+    assert capsys.readouterr().err == ""
+    frames_file(tmp_path / "still.csv", [0.0, 0.02], [0.0, 0.0])
+    assert main(["bake", str(tmp_path / "still.csv"), *options]) == 0
+    assert "frames do not tell their sounds, which tongue of" in capsys.readouterr().err
+    assert data(tmp_path / "th.h") == [0, 0]
+
+
+@pytest.mark.parametrize("acceleration", ["", "acceleration = 20\n"])
+def test_a_deadband_ends_at_rest(tmp_path: Path, acceleration: str) -> None:
+    """A servo that stays beside its neutral hums until the next sentence."""
+    face, out = tmp_path / "face.toml", tmp_path / "a.h"
+    face.write_text('[output.lip]\nfrom = "upper_lip"\nneutral = 1480\nfull = 1700\nminimum = 1280\ndeadband = 9\n'
+                    + acceleration)
+    assert main(["bake", str(TALK / "talk.lab"), "--rig", str(face), "-o", str(out)]) == 0
+    ends = data(out)[-1]
+    assert abs(1280 + ends * 420 / 255 - 1480) <= 1
 
 
 def test_limits_and_directions(tmp_path: Path) -> None:

@@ -58,6 +58,29 @@ def expected(motion: Sequence[Sequence[int]], face: Path = FACE) -> List[bytes]:
     return [bytes(row) for row in as_bytes(rig, convert(rig), np.array(motion, dtype=np.float64))]
 
 
+def test_packets_follow_sounds(tmp_path: Path) -> None:
+    """A tongue that stays at rest though the frames bring the shares of their sounds; 13 FAPs alone move no tongue."""
+    (tmp_path / "tongue.toml").write_text('unit = "weight"\n[output.tongue]\nneutral = 0\nvisemes = { TH = 1.0 }\n'
+                                          "full = 1\n")
+    motion = labial.render([("TH", 200), ("IH", 200), ("TH", 200)])
+    assert all(len(frame.visemes) == 15 and sum(frame.visemes) in range(120, 136) for frame in motion)
+    with labial.Stream() as stream:
+        for phoneme in ("TH", "IH", "TH"):
+            stream.push(phoneme, 200)
+        stream.end()
+        streamed = list(stream)
+    assert [frame.visemes for frame in streamed] == [frame.visemes for frame in motion]
+
+    def tongue(frames: Sequence) -> List[int]:
+        packets = labial.Beside(tmp_path / "tongue.toml").packets(frames, sample=0, sample_rate=24000)
+        return [row[0] for packet in packets for row in parse(packet.data).frames]
+
+    shown = tongue(motion)
+    assert shown == tongue(streamed)
+    assert min(shown[2:8]) > 240 and max(shown[14:17]) < 60 and shown[-1] == 0
+    assert set(tongue([tuple(frame) for frame in motion])) == {0}
+
+
 def test_packets_have_the_bytes_of_baked_motion() -> None:
     """Catches another rounding than that of `labial bake`, whose player the toy's units are those of, and frames that
     are lost, doubled or numbered otherwise."""

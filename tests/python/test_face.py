@@ -162,6 +162,31 @@ ACCELERATION = "slew = {slew}\nacceleration = {acceleration}\n"
 
 
 @needs_runtime
+@pytest.mark.parametrize("limits", ["", "slew = 90\nacceleration = 30\n"])
+def test_outputs_follow_sounds(tmp_path: Path, limits: str) -> None:
+    """A tongue that stays at rest, or that a face and a rig move otherwise, though frames bring the shares of their
+    sounds. What sounds mean is in sight like what FAPs mean."""
+    description = f"[output.tongue]\nneutral = 1500\nvisemes = {{ TH = 300 }}\nfull = 1800\n{limits}"
+    frames = labial.render([("TH", 200), ("IH", 200), ("TH", 200)])
+    face, shown = face_of(tmp_path, description, ahead=5), []
+    for frame in frames:
+        face.frame(frame)
+        shown.append(face.tick()["tongue"])
+    while not face.rests:
+        shown.append(face.tick()["tongue"])
+    rig = Rig(tmp_path / "face.toml")
+    assert shown[5:5 + len(frames)] == [values["tongue"] for values in rig.ahead(frames, 5)]
+    assert max(shown) > 1740 and min(shown[20:25]) < 1600 and shown[-1] == 1500
+    rig.rest()
+    known = [rig.apply(tuple(frame), visemes=frame.visemes)["tongue"] for frame in frames]
+    rig.rest()
+    assert [rig.apply(frame)["tongue"] for frame in frames] == known
+    blind = face_of(tmp_path, description)
+    blind.frame(tuple(frames[8]))
+    assert blind.tick() == {"tongue": 1500}
+
+
+@needs_runtime
 def test_both_directions_are_alike(tmp_path: Path) -> None:
     """Mirrored motion is mirrored, at any limits and sight; what is asked frame by frame is what is played."""
     rng = np.random.default_rng(11)
@@ -287,21 +312,21 @@ class Servo(NamedTuple):
             value = math.floor(value + (self.closed - value) * contact / 64 + 0.5)
         return value
 
-    def next(self, last: int, change: int, sight: List[int], deadband: int) -> int:
+    def next(self, last: int, change: int, sight: List[int]) -> int:
         """The value after `last`, which came by `change`, with what is wanted from now on in sight."""
         if not self.acceleration:
             wanted = sight[0]
             if self.closed is not None and self.slew and self.closed in sight:
                 room = self.slew * sight.index(self.closed)
                 wanted = max(self.closed - room, min(wanted, self.closed + room))
-            step = wanted - last if abs(wanted - last) >= deadband else 0
+            step = wanted - last if wanted == self.rest or abs(wanted - last) >= self.deadband else 0
             return last + (max(-self.slew, min(step, self.slew)) if self.slew else step)
         speed = min(self.slew, SIGHT * self.acceleration)
         sign = -1 if last < self.rest else 1
         least, most = sorted((sign * change - self.acceleration, sign * change + self.acceleration))
         least, most = max(least, -speed), min(most, speed)
         step = sign * (sight[0] - last)
-        step = max(least, min(0 if abs(step) < deadband else step, most))
+        step = max(least, min(0 if sight[0] != self.rest and abs(step) < self.deadband else step, most))
         while step > least and not self.stops(sign, last, step, sight[:SIGHT], speed):
             step -= 1
         while step < most and not self.stops(-sign, last, -step, sight[:SIGHT], speed):
@@ -381,7 +406,7 @@ def test_what_boards_move() -> None:
                 rests = left == 0 or ticks < 10 * (k + 1)
                 sight = [servo.rest] if rests else [wanted[k], *(row[k] for row in waiting if plays)]
                 if moves:
-                    value = servo.next(values[k], changes[k], sight, 0 if rests else servo.deadband)
+                    value = servo.next(values[k], changes[k], sight)
                     values[k], changes[k] = value, value - values[k]
                 if result == 3 and (left or values[k] != servo.rest or changes[k]):
                     result = 2

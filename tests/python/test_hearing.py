@@ -363,6 +363,22 @@ def small() -> HearingModel:
     return random_model(4, (Memory(1, 1, 1), Memory(2, 1, 2)))
 
 
+@pytest.mark.skipif(not CC, reason="no C compiler")
+@pytest.mark.parametrize("name", ["hear_host", "hear_ahead", "hear_small"])
+def test_a_model_without_room_says_what_it_needs(tmp_path: Path, name: str) -> None:
+    """In a default build the compiler names the limit that a large model needs, where it is used; a file that only
+    includes its header compiles, as does everything in a build with room."""
+    program = tmp_path / "main.c"
+    program.write_text(f"#include \"{name}.h\"\n#ifdef USE\nconst void *const used = &{name};\n#endif\n")
+    folders = [f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}"]
+    command = [CC, "-std=c99", "-fsyntax-only", *folders, str(program)]
+    for options, fits in (([], True), (["-DUSE"], name == "hear_small"),
+                          (["-DUSE", "-DLABIAL_HEAR_UNITS_MAX=192"], True)):
+        made = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+        assert (made.returncode == 0) == fits, made.stderr
+        assert fits or f"{name}_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_192" in made.stderr
+
+
 def test_a_model_is_read_as_it_was_written(tmp_path: Path) -> None:
     """Catches an array that is left out, and a file that differs from one run to the next."""
     model = replace(small(), attribution="Made by nobody.", training={"steps": 3})

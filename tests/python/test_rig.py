@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from labial.__main__ import main
-from labial.errors import LabialError
+from labial.errors import LabialError, ModelError
+from labial.files.c import OWN_TABLES, check_name
 from labial.rig import table
 from labial.rig.description import SOURCES, read
 from labial.rig.table import FAP_MAX, convert, expected
@@ -419,6 +420,8 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "visemes = { TH = 4e4 }\n", "output.jaw.visemes.TH: 40000 microseconds is beyond 32767"),
         (JAW.replace('from = "opening"', "reach = 3\nvisemes = { TH = 100 }"), "output.jaw.reach: goes with from"),
         (GAIN.replace('from = "opening"', "visemes = { TH = 100 }"), "output.jaw.gain: goes with from"),
+        (JAW.replace('from = "opening"', "visemes = { TH = 100 }").replace("full = 1900\n", ""),
+         "output.jaw.full: is needed, the value that sounds move it to at most"),
         (JAW + "minimum = 1500\n", "output.jaw.neutral: 1400 is not within 1500 .. 1900"),
         (JAW + "maximum = 1800\n", "output.jaw.full: 1900 is not within 1400 .. 1800"),
         (JAW.replace("full = 1900", "gain = 1"), "output.jaw.minimum: is missing"),
@@ -446,6 +449,17 @@ def test_errors_name_file_and_key(
     assert not (tmp_path / "out").exists()
 
 
+def test_names_of_the_library_are_all_known() -> None:
+    """A model or a table of words whose header a rig of the same name could replace."""
+    headers = [*(SOURCE / "lib" / "models").glob("*.h"), *(SOURCE / "lib" / "words").glob("*.h")]
+    assert {path.stem for path in headers} == OWN_TABLES
+    for name in sorted(OWN_TABLES):
+        check_name(name)
+        check_name(name, "table of words")
+        with pytest.raises(ModelError, match="the library already uses it"):
+            check_name(name, "header")
+
+
 def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """A missing file, a file name that C cannot spell, and the way out of it."""
     assert main(["rig", str(tmp_path / "none.toml"), "-o", str(tmp_path)]) == 1
@@ -456,9 +470,10 @@ def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) 
     assert main(["rig", str(tmp_path / "my face.toml"), "-o", str(tmp_path), "--no-figure", "--name", "face"]) == 0
 
 
-@pytest.mark.parametrize("name", ["outputs", "jaw_curve", "jaw_visemes", "stdint", "Math", "linux"])
+@pytest.mark.parametrize("name", ["outputs", "jaw_curve", "jaw_visemes", "stdint", "Math", "linux", "Servo", "Arduino",
+                                  *sorted(OWN_TABLES)])
 def test_names_with_which_c_does_not_compile(tmp_path: Path, capsys: pytest.CaptureFixture, name: str) -> None:
-    """Names of the file's other tables, of system headers, and of macros. A name is free where there is no table."""
+    """Names of the file's other tables, of other headers, and of macros. A name is free where there is no table."""
     (tmp_path / f"{name}.toml").write_text(CURVED + "visemes = { TH = 3 }\n")
     assert main(["rig", str(tmp_path / f"{name}.toml"), "-o", str(tmp_path / "out"), "--no-figure"]) == 1
     assert f"'{name}' is no name for a rig: " in capsys.readouterr().err and not (tmp_path / "out").exists()

@@ -26,9 +26,10 @@ AVR_FLASH = 65535
 BEFORE = 15
 
 _OPENING = GESTURES["opening"]
-#: A jaw alone, as in examples/faces/jaw.toml: microseconds with the lips closed and wide open.
+#: A jaw alone: microseconds with the lips closed and wide open, as in examples/faces/jaw.toml, and the most in a frame
+#: that a slow one of the common servos follows (docs/servos.md), so that it closes in every p, b, m.
 JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPENING.reach or 1.0), 1400.0, 1400.0,
-                                          1900.0, False, 0.0, False, 1400.0),), "jaw")
+                                          1900.0, False, 60.0, False, 1400.0),), "jaw")
 
 
 def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,

@@ -42,7 +42,7 @@ def whole_faps(frames: np.ndarray) -> array[int]:
 
 def whole_shares(shares: np.ndarray) -> bytes:
     """Shares of sounds (T, 15), 0 .. 1, as the library takes them: 15 T bytes, LABIAL_VISEME_ONE for 1."""
-    return np.rint(128 * np.clip(shares, 0, 1)).astype(np.uint8).tobytes()
+    return bytes(np.rint(128 * np.clip(shares, 0, 1)).astype(np.uint8))
 
 
 def opening(frames: np.ndarray) -> np.ndarray:

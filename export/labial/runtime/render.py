@@ -6,8 +6,8 @@ import os
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextIO, Tuple, Union
 
 from labial.core.guard import duration, expect_milliseconds
-from labial.core.lines import LAUGH
 from labial.core.library import VISEMES
+from labial.core.lines import LAUGH
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
