@@ -137,8 +137,8 @@ def _check_length(path: PathLike, seconds: float) -> None:
 
 
 def _at_rate(path: PathLike, times: np.ndarray, frames: np.ndarray) -> np.ndarray:
-    """Frames, of any numbers, at 50 a second from time 0, the sound's beginning: as they are, or interpolated linearly. Before the first
-    and behind the last the mouth stays as it is there."""
+    """Frames, of any numbers, at 50 a second from time 0, the sound's beginning: as they are, or interpolated linearly.
+    Before the first and behind the last the mouth stays as it is there."""
     if times[-1] < 0:
         raise DataError(path, None, f"its last time, {times[-1]:g} s, lies before 0, where the sound begins")
     _check_length(path, float(times[-1]))
