@@ -82,7 +82,7 @@ def _measured(*_: Any) -> Any:
 
 
 def _evaluate() -> None:
-    from labial.evaluate import plots
+    from labial.evaluate import report
 
     def blank(_: Any, __: Any, folder: Path) -> List[str]:
         for name in PICTURES:
@@ -90,7 +90,7 @@ def _evaluate() -> None:
         return PICTURES
 
     labial.evaluate.protocol.run_split = lambda _, split, __: _outcomes()[split.number]  # type: ignore[assignment]
-    plots.write = blank
+    report.draw = blank
 
 
 @functools.cache

@@ -80,7 +80,7 @@ class Found:
     """What alignment is taken for in the tests below."""
 
     def __init__(self, confidence: float) -> None:
-        from labial.sound.confidence import Stretch
+        from labial.sound.recogniser import Stretch
 
         self.stretches = [Stretch(0.0, 0.3, confidence), Stretch(0.3, 0.4, 1.0)]
 

@@ -56,7 +56,7 @@ def run_align(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     with needs("aligning", "align"):
         from labial.sound.align import align_with_bar
-        from labial.sound.confidence import summary
+        from labial.sound.recogniser import summary
     from labial.files.outputs import check, check_suffix
 
     check(options.output)

@@ -131,7 +131,7 @@ def _words(options: argparse.Namespace) -> Optional[_Words]:
         return None
     with needs("finding a text in a sound", "align"):
         from labial.sound.align import aligned
-        from labial.sound.confidence import LOW
+        from labial.sound.recogniser import LOW
     if text is not None:
         return _Words(_timings(aligned(options.sound, text).segments), SHARE, [])
     with warnings.catch_warnings():

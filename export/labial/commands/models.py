@@ -156,14 +156,13 @@ def _export_hearing(options: argparse.Namespace) -> int:
 
 def _export_words(options: argparse.Namespace) -> int:
     """Writes tables of words, which `labial train-words` made, and prints their memory."""
-    from labial.words import emit
-    from labial.words.packing import pack
+    from labial.words import packing
     from labial.words.tables import load
 
     if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
         raise LabialError(f"{options.model}: tables of words; --blob, --amplitude and --predecessors are for models")
-    packed = pack(load(options.model))
-    for path in emit.write(packed, options.name, options.output):
+    packed = packing.pack(load(options.model))
+    for path in packing.write(packed, options.name, options.output):
         print(path)
     print(f"{packed.size} bytes: trees {len(packed.trees)}, exceptions {len(packed.patches) + 2 * len(packed.buckets)}")
     return 0

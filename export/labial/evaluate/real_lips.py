@@ -22,7 +22,7 @@ from labial.corpus.episode import Episode
 from labial.corpus.formats import SOUNDS
 from labial.corpus.timings import PathLike
 from labial.errors import DataError, needs
-from labial.evaluate.loudness import loudness_of
+from labial.evaluate.hearing import loudness_of
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.faps import FAP_NUMBERS
 from labial.files.frames import opening, sampled

@@ -13,13 +13,11 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
-from labial.fit.head import Head, read_table
+from labial.fit.head import Head, own, read_table
 from labial.fit.kinds import KINDS, kind_of, prepare, unknown
 from labial.fit.landmarks import Found, read_head
 from labial.fit.meaning import crooked, judge, matrix
-from labial.fit.names import own
-from labial.fit.sentences import read_sentences
-from labial.fit.solve import FEATURES, Solution, solve
+from labial.fit.solve import FEATURES, Solution, read_sentences, solve
 from labial.program import one_line
 from labial.rig.animation import outputs
 from labial.rig.description import SOURCES, Rig, make_unit, read

@@ -172,7 +172,7 @@ def _aligned(rows: Sequence[_Row], jobs: int) -> Iterable[str]:
 def _align(row: _Row) -> str:
     """Aligns a sound and keeps the result, an empty file if the text does not fit; returns the problem, or ""."""
     from labial.sound.align import aligned
-    from labial.sound.confidence import LOW
+    from labial.sound.recogniser import LOW
 
     sound, item, kept = row
     problem, lab = "", ""

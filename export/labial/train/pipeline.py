@@ -19,7 +19,6 @@ from labial.reference.shape import ShapeTables, choose
 from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model, widened
 from labial.tables.quantise import LIMITS
-from labial.train.adapt import about_talkers
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains
 from labial.train.kernels import (
@@ -47,7 +46,15 @@ from labial.train.states import (
     decode,
     match_states,
 )
-from labial.train.talkers import check_variance, counted_once, fit_talkers, pair_count_of, penalties_of, weights_of
+from labial.train.talkers import (
+    about_talkers,
+    check_variance,
+    counted_once,
+    fit_talkers,
+    pair_count_of,
+    penalties_of,
+    weights_of,
+)
 from labial.train.workers import Workers
 
 #: Utterances that are decoded at once.
