@@ -22,9 +22,15 @@ from labial.corpus.languages import speakable  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
 from labial.files.frames import opening  # noqa: E402
 from labial.hearing import targets  # noqa: E402
-from labial.hearing.espeak import closure, phonemes  # noqa: E402
-from labial.hearing.speech_corpus import Written, read_sentences, write_corpus  # noqa: E402
-from labial.hearing.voices import Spoken, speak  # noqa: E402
+from labial.hearing.voices import (  # noqa: E402
+    Spoken,
+    Written,
+    closure,
+    phonemes,
+    read_sentences,
+    speak,
+    write_corpus,
+)
 from packages import needs_runtime  # noqa: E402
 from test_speak import REST, TEXT, sound_and_motion  # noqa: E402
 
@@ -198,7 +204,7 @@ def test_a_corpus_is_spoken(tmp_path: Path) -> None:
     sentences."""
     sentences = ["A map.", "My papa.", "Blue bees.", "Five."]
     voices = ["flite:kal16", "espeak:en-us"]
-    code = ("import sys; from labial.hearing.speech_corpus import write_corpus\n"
+    code = ("import sys; from labial.hearing.voices import write_corpus\n"
             "print(*write_corpus(sys.argv[1], {}, {}, .15, {}))")
     for name, seed in (("a", 0), ("b", 0), ("c", 1)):
         given = [sys.executable, "-c", code.format(sentences, voices, seed), str(tmp_path / name)]

@@ -166,7 +166,7 @@ def run_speech_corpus(options: argparse.Namespace) -> int:
     with needs("speaking", "hear"):
         from tqdm import tqdm
 
-        from labial.hearing.speech_corpus import read_sentences, write_corpus
+        from labial.hearing.voices import read_sentences, write_corpus
     from labial.files.outputs import check_folder
 
     check_folder(options.output)

@@ -30,7 +30,6 @@ def run_rig(options: argparse.Namespace) -> int:
     from labial.files.outputs import folder
     from labial.rig import calibrate, table
     from labial.rig.description import read
-    from labial.see import figure
 
     name = options.name or Path(options.description).stem
     check_name(name, "rig")
@@ -44,8 +43,10 @@ def run_rig(options: argparse.Namespace) -> int:
     with folder(options.output) as made:
         paths = table.write(rig, made)
         if not options.no_figure:
+            with needs("drawing (--no-figure leaves it out)", "rig"):
+                from labial.see.plot import draw_rig
             paths.append(made / f"{name}.svg")
-            figure.draw(rig, paths[-1])
+            draw_rig(rig, paths[-1])
     for path in paths:
         print(Path(options.output) / path.name)
     return 0

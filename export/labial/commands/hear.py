@@ -119,7 +119,7 @@ class _Words(NamedTuple):
 def _words(options: argparse.Namespace) -> Optional[_Words]:
     """The phonemes of a file's sound: those that are given, those of its text, or those of the words that are found;
     None for the sound alone."""
-    from labial.runtime.mixing import SHARE
+    from labial.runtime.hearing import SHARE
 
     if options.phones is not None:
         from labial.runtime.render import read_timings
@@ -150,8 +150,7 @@ def _mixed(words: _Words, heard: np.ndarray, exact: bool) -> np.ndarray:
     import numpy as np
 
     from labial.reference.fade import eased, rests
-    from labial.runtime.hearing import FPS
-    from labial.runtime.mixing import with_sound
+    from labial.runtime.hearing import FPS, with_sound
     from labial.runtime.render import render
 
     count = len(heard)

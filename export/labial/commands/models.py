@@ -220,8 +220,8 @@ def add_bake(command: argparse.ArgumentParser) -> None:
 
 def run_bake(options: argparse.Namespace) -> int:
     """Writes the header and, for a track, its player; prints where parts begin and end."""
-    from labial.bake.bake import bake
     from labial.bake.source import Source
+    from labial.bake.track import bake
 
     source = Source(options.file, options.model, said(options), options.labels, options.source,
                     options.tier, shows_progress(options))

@@ -1,7 +1,7 @@
 r"""Phone sets: a model's phonemes, their viseme classes, the boundaries of units, and the aliases.
 
 A *phoneme* is a label of a model's inventory, an *alias* a label of some front end or corpus that means one. The
-meaning of an alias depends on the set of labels that it belongs to (:mod:`labial.corpus.aliases`); if none is named,
+meaning of an alias depends on the set of labels that it belongs to (:mod:`labial.corpus.labels`); if none is named,
 ARPABET comes before the IPA, and the IPA before X-SAMPA.
 
 Viseme classes of speech group what lips and jaw do, not what the tongue does: so /k g ng/ go with /hh/, which leave the
@@ -15,8 +15,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Collection, Dict, List, Optional, Sequence, Tuple
 
-from labial.corpus.aliases import LABEL_SETS, LAUGHTER_LABELS, SPEECH_LABELS
-from labial.corpus.labels import AUTO, find, find_first, longest_of, nearest, normalise
+from labial.corpus.labels import (
+    AUTO,
+    LABEL_SETS,
+    LAUGHTER_LABELS,
+    SPEECH_LABELS,
+    find,
+    find_first,
+    longest_of,
+    nearest,
+    normalise,
+)
 
 __all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet",
            "aliases_for",

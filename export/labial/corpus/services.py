@@ -1,7 +1,7 @@
 """What speech services and neural synthesisers report as JSON: the table services.json, and its interpreter.
 
 The table says of each service which lists and fields of its messages have texts and times; web/services.js reads the
-same. :mod:`labial.corpus.service_files` makes segments of a file of messages; :mod:`labial.corpus.messages` reads
+same. :mod:`labial.corpus.formats` makes segments of a file of messages; :mod:`labial.corpus.messages` reads
 messages as they arrive.
 """
 

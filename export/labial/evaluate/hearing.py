@@ -24,9 +24,8 @@ from labial.hearing.measures import Figures, Judged, delay, measured
 from labial.hearing.model import HearingModel
 from labial.hearing.network import hear
 from labial.hearing.quantise import quantise
-from labial.hearing.speech_corpus import read_sentences
 from labial.hearing.targets import closure, frames
-from labial.hearing.voices import speak
+from labial.hearing.voices import read_sentences, speak
 
 #: dB below the loud frames' level at which the mouth is shut.
 _RANGE = 30.0

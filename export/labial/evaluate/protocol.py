@@ -1,9 +1,9 @@
 """The comparison: fit every method on each split's training part, measure it on the rest (docs/method.md, How it is
 judged).
 
-Finished splits are stored on the disk, so that an interrupted evaluation can continue. Each is a file of the folder ``.splits`` in the report's folder: the measures as JSON, and the motion for plots as
-arrays. A file is valid only for the same corpus, options and versions; the folder is removed when the report is
-written.
+Finished splits are stored on the disk, so that an interrupted evaluation can continue. Each is a file of the folder
+``.splits`` in the report's folder: the measures as JSON, and the motion for plots as arrays. A file is valid only for
+the same corpus, options and versions; the folder is removed when the report is written.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ from labial.hearing.features import BANDS, FLOOR, FRAME, HOPS, log_energies
 from labial.hearing.measures import RATE
 from labial.hearing.model import CLASSES, HearingModel
 from labial.hearing.quantise import quantise
-from labial.runtime.mixing import with_sound
+from labial.runtime.hearing import with_sound
 
 #: The file of log energies, and the most bytes that it may have, unpacked: some hours.
 ENERGIES, LARGEST = "energies.npz", 128_000_000

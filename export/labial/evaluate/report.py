@@ -19,9 +19,9 @@ from labial.evaluate.material import Example, Options, Outcome, bands
 from labial.evaluate.measures import JUDGED, JUDGED_NAMES, LIPS, PARAMETERS, groups
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN
-from labial.see import drawing
-from labial.see.drawing import COLOURS, pyplot, style
+from labial.see import plot
 from labial.see.motion import Band, kind_of
+from labial.see.plot import COLOURS, pyplot, style
 
 #: Column title and measure.
 Columns = Sequence[Tuple[str, str]]
@@ -302,7 +302,7 @@ def _name(example: Example, options: Options) -> str:
 
 def _curves(axes: Axes, example: Example, frames: slice, channel: int, options: Options) -> None:
     """The original and the methods, over the phonemes."""
-    drawing.shade(axes, _bands(example, frames, options))
+    plot.shade(axes, _bands(example, frames, options))
     time = (np.arange(frames.start, frames.stop) + 0.5) / options.fps
     original = title(HUMAN, options.synthetic)
     axes.plot(time, example.utterance.human[frames, channel], color="black", linewidth=1.6, label=original)
@@ -322,16 +322,16 @@ def _finish(figure: Figure, every: Sequence[Axes], example: Example, frames: sli
     """Phonemes above the first axes, the legend below the last, and the file; returns its name."""
     shown = _bands(example, frames, options)
     curves = every[0].get_legend_handles_labels()[0]
-    patches = list(drawing.legend_patches(shown))
+    patches = list(plot.legend_patches(shown))
     figure.align_ylabels(every)
     handles = [*curves, *patches]
     figure.legend(handles=handles, loc="lower center", ncol=len(handles) if len(handles) <= 7 else 5, frameon=False,
                   fontsize=7.5, columnspacing=1.6)
     room = (0, (0.25 if len(handles) <= 7 else 0.42) / figure.get_figheight(), 1, 1)  # below it is the legend
     figure.tight_layout(rect=room)
-    drawing.label(every[0], shown, upright=example.kind == "laughter")
+    plot.label(every[0], shown, upright=example.kind == "laughter")
     figure.tight_layout(rect=room)
-    drawing.write(figure, path)
+    plot.write(figure, path)
     return path.name
 
 
@@ -376,7 +376,7 @@ def _bars(
     axes.set_ylabel(label + (", synthetic data" if options.synthetic else ""))
     axes.legend(fontsize=7, ncol=3, frameon=False)
     figure.tight_layout()
-    drawing.write(figure, path)
+    plot.write(figure, path)
     return path.name
 
 

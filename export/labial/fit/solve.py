@@ -14,8 +14,9 @@ separately (accelerated projected gradient), then the rig nearest to them, and r
 their difference. Then it optimises the rig alone (L-BFGS) with a softened corner at 0, and finally removes the least
 useful coefficients, one at a time.
 
-Rigs are solved for, and judged on, sentences as motion: ``sentences.flite`` are 24 English sentences as flite times them (``flite -voice VOICE -t SENTENCE -psdur -o none``), in
-turn by its voices kal, slt and rms: each phoneme with the second at which it ends.
+Rigs are solved for, and judged on, sentences as motion: ``sentences.flite`` are 24 English sentences as flite times
+them (``flite -voice VOICE -t SENTENCE -psdur -o none``), in turn by its voices kal, slt and rms: each phoneme with the
+second at which it ends.
 """
 
 from __future__ import annotations

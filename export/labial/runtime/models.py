@@ -20,7 +20,7 @@ from labial.core.library import (
     memory,
     sentence,
 )
-from labial.corpus.aliases import LABEL_SETS
+from labial.corpus.labels import LABEL_SETS
 from labial.errors import LabialError, ModelError, StreamError
 from labial.files import limits
 

@@ -41,8 +41,8 @@ from labial.corpus.words import (
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.render import Sounds, offset
 from labial.runtime.stream import Frame
-from labial.runtime.words import Sounds, offset
 
 #: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
 #: one place, a word up to 20 letters two (LABIAL_VOICE_SIZE of include/labial/voice.h).

@@ -68,7 +68,7 @@ def sheet(rig: Rig, found: Found, path: Union[str, os.PathLike[str]], captions: 
     with needs("drawing (--no-figure leaves it out)", "fit"):
         from matplotlib.collections import PolyCollection
 
-        from labial.see.drawing import pyplot, style
+        from labial.see.plot import pyplot, style
 
     weights = outputs(rig, frames)
     rows = -(-len(frames) // columns)

@@ -1,5 +1,4 @@
-"""``labial align``: phonemes of a recording with their times, from its text or from the sound alone.
-"""
+"""``labial align``: phonemes of a recording with their times, from its text or from the sound alone."""
 
 from __future__ import annotations
 

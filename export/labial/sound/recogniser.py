@@ -1,11 +1,12 @@
 """PocketSphinx with its English models: phonemes of a piece of sound, with or without its words.
 
-The confidence of a stretch of an alignment is the expected share of it with the right phonemes. The recogniser gives each phoneme a score, the mean of its frames: 0 for a sound that the models expect for that
-phoneme, far below for another sound. The confidence is a logistic function of the mean score of a stretch and of the
-share of its time that lies in phonemes longer than people speak. Its numbers were fitted to 27 recordings of
-LibriSpeech, LibriTTS, VCTK and ARCTIC whose text was cut or another recording's, or whose sound was faster or under
-noise or music; the alignment of the same unchanged recording served as the truth. There the confidence and the share
-that was right correlate by .82; 84 % of the stretches that were mostly wrong are below `LOW`, 7 % of the others.
+The confidence of a stretch of an alignment is the expected share of it with the right phonemes. The recogniser gives
+each phoneme a score, the mean of its frames: 0 for a sound that the models expect for that phoneme, far below for
+another sound. The confidence is a logistic function of the mean score of a stretch and of the share of its time that
+lies in phonemes longer than people speak. Its numbers were fitted to 27 recordings of LibriSpeech, LibriTTS, VCTK and
+ARCTIC whose text was cut or another recording's, or whose sound was faster or under noise or music; the alignment of
+the same unchanged recording served as the truth. There the confidence and the share that was right correlate by .82; 84
+% of the stretches that were mostly wrong are below `LOW`, 7 % of the others.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from typing import List, Sequence, Union
 import numpy as np
 
 from labial import __version__
-from labial.corpus.aliases import LABEL_SETS
+from labial.corpus.labels import LABEL_SETS
 from labial.errors import ModelError
 from labial.files.c import block_comment, check_name, constants_of, rows
 from labial.files.faps import FAP_NAMES

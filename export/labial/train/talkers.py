@@ -15,9 +15,9 @@ than one person can. Both sums count a talker by the weight of his corpus. A cha
 fitted as without talkers, with prior P.
 
 A voice is adapted to a talker by what talkers share, from a model that was trained so, plus his deviation, from half a
-minute of his speech. The model's kernels, shapes, slopes and pairs are b; those of the talker are b + u, with u by its posterior mean given his motion and the variance of
-talkers. How far they move is measured on him anew, in his own units. Everything else of the model, its mixtures, floors
-and states, stays.
+minute of his speech. The model's kernels, shapes, slopes and pairs are b; those of the talker are b + u, with u by its
+posterior mean given his motion and the variance of talkers. How far they move is measured on him anew, in his own
+units. Everything else of the model, its mixtures, floors and states, stays.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Packs tables of words into the bytes that ``include/labial/words.h`` describes and ``lib/words.c`` reads, and writes them as C.
+"""Packs tables of words into the bytes that ``include/labial/words.h`` describes and ``lib/words.c`` reads, and writes
+them as C.
 
 Node
     Two bytes, the higher first: ``question << 7 | kind << 5 | five``. Kind 0: both answers lead to leaves; `five` is

@@ -5,7 +5,8 @@ that it avoids. One price per leaf holds for all trees; it is chosen so that as 
 Weights are whole numbers and the logarithms of the gains are rounded to 2^-24, so that gains are exact sums and equal
 questions tie on every machine; the first one wins.
 
-Words are read from their last letter to their first. What a tree may ask about a letter is a number, 0 .. 399, and needs no table:
+Words are read from their last letter to their first. What a tree may ask about a letter is a number, 0 .. 399, and
+needs no table:
 
 ======== ====================================================================================================
 0 .. 255 32 * place + what: place 0 .. 3 is the letter 1 .. 4 to the left, 4 .. 7 the letter 1 .. 4 to the right;
