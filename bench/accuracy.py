@@ -95,9 +95,8 @@ def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarr
     return np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True) for stream in streams])
 
 
-def measure(
-    model: Model, exported: ExportedModel, solver: Sequence[str], streams: Sequence[Stream]
-) -> Dict[str, float]:
+def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
+            streams: Sequence[Stream]) -> Dict[str, float]:
     """The figures by name."""
     ideal, tables = FloatTables(model), ExportedTables(exported)
     errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)

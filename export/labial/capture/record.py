@@ -34,9 +34,8 @@ _SLOW = 24.0
 _MOST_OFFSET = 5.0  # seconds
 
 
-def record(
-    sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float, offset: float = 0.0
-) -> str:
+def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float,
+           offset: float = 0.0) -> str:
     """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
 
     The picture is assumed to be `offset` seconds later than its sound; the summary of speech reports the remaining

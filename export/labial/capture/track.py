@@ -28,10 +28,8 @@ Faces = List[Tuple[np.ndarray, float]]
 MOST_FACES = 4
 
 
-def landmarks(
-    video: PathLike, output: PathLike, face: Optional[str] = None, task: Optional[PathLike] = None,
-    progress: bool = False,
-) -> str:
+def landmarks(video: PathLike, output: PathLike, face: Optional[str] = None, task: Optional[PathLike] = None,
+              progress: bool = False) -> str:
     """Writes the landmarks of a video's talker as the .npz that ``labial record`` takes; returns a summary.
 
     `face` says which face, one of `labial.defaults.WHICH_FACE`, where there is more than one; `task` is the model file

@@ -38,9 +38,8 @@ NAME = re.compile(r"\d+_\d+_\d+")
 SPEECH_TAG = "speech"
 
 
-def read_avlaughter(
-    path: PathLike, phone_set: PhoneSet = LAUGHTER, refused: Optional[List[DataError]] = None
-) -> List[Episode]:
+def read_avlaughter(path: PathLike, phone_set: PhoneSet = LAUGHTER,
+                    refused: Optional[List[DataError]] = None) -> List[Episode]:
     """Reads all laughs under `path` (sub-folders included) that have motion, sorted by name.
 
     Malformed files raise DataError, and so does motion without annotation. Laughs without motion and those that contain
@@ -175,10 +174,8 @@ def read_each(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech
     return corpora
 
 
-def read_corpora(
-    paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False,
-    distinct: bool = False
-) -> List[List[Episode]]:
+def read_corpora(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False,
+                 distinct: bool = False) -> List[List[Episode]]:
     """Reads several corpora as :func:`read_each` does, and brings every recording's mean and scale, channel by channel,
     to those of the first; with `even_sides` those of the mean of both sides of the mouth. Includes what every corpus
     excludes, with a warning. With `distinct` raises DataError for two episodes of the same motion."""

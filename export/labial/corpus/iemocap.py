@@ -181,9 +181,8 @@ def neutral_face(utterances: List[_Utterance], silence: str) -> np.ndarray:
     return face
 
 
-def read_iemocap(
-    path: PathLike, phone_set: PhoneSet = SPEECH, refused: Optional[List[DataError]] = None
-) -> List[Episode]:
+def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
+                 refused: Optional[List[DataError]] = None) -> List[Episode]:
     """Reads the corpus under `path`, episodes sorted by name (times from the utterance's start, 120 frames/s).
 
     Malformed files raise DataError. Utterances whose motion has too many gaps, or that have motion but no phoneme

@@ -134,9 +134,8 @@ def candidates_for(label: str) -> List[str]:
     return list(dict.fromkeys([*order, phone_set.silence]))
 
 
-def _phone_set(
-    kind: str, groups: Dict[str, str], boundary: str, order: str, aliases: Dict[str, Dict[str, str]]
-) -> PhoneSet:
+def _phone_set(kind: str, groups: Dict[str, str], boundary: str, order: str,
+               aliases: Dict[str, Dict[str, str]]) -> PhoneSet:
     phonemes = tuple(order.split())
     index = {label: number for number, labels in enumerate(groups.values()) for label in labels.split()}
     ends = boundary.split()

@@ -167,9 +167,8 @@ def _rest(corpus: Sequence[Episode], silence: str, default: np.ndarray) -> np.nd
     return np.median(np.concatenate(frames), axis=0) if sum(map(len, frames)) else default
 
 
-def _common_deviation(
-    names: Sequence[str], moments: Dict[str, Tuple[np.ndarray, np.ndarray]], share: Dict[str, int]
-) -> np.ndarray:
+def _common_deviation(names: Sequence[str], moments: Dict[str, Tuple[np.ndarray, np.ndarray]],
+                      share: Dict[str, int]) -> np.ndarray:
     """(13,) the standard deviation of several recordings, each about its own mean."""
     return np.sqrt(np.average([moments[name][1] ** 2 for name in names], axis=0, weights=[share[n] for n in names]))
 
@@ -181,9 +180,7 @@ def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviat
     return [_brought(item, moments[item.source.recording], mean, deviation) for item in corpus]
 
 
-def _brought(
-    item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray
-) -> Episode:
+def _brought(item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray) -> Episode:
     """The episode with its recording's mean and standard deviation, `own`, brought to others."""
     own_mean, own_deviation = own
     moves = own_deviation > 1e-9

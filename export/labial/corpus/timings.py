@@ -89,10 +89,8 @@ def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> 
     return phone_set.resolve(segment.label, labels) if known is None else known
 
 
-def phoneme_segments(
-    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO,
-    laughs: bool = False
-) -> Tuple[Segment, ...]:
+def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True,
+                     labels: str = AUTO, laughs: bool = False) -> Tuple[Segment, ...]:
     """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
     error message.
 

@@ -220,9 +220,7 @@ def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
 # ---- Figures
 
 
-def evaluated(
-    sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]
-) -> Iterator[Row]:
+def evaluated(sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]) -> Iterator[Row]:
     """A row for each set, condition and method. The distortions of a sound are the same for all methods."""
     for item in sets:
         true = [(targets.frames(timings, frames_of(len(sound))), targets.classes(timings, frames_of(len(sound))))

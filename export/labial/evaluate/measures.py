@@ -83,12 +83,10 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
     )
     risen = [rises(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
     pulses = np.concatenate(risen) if has_pulses(phone_set) else np.zeros(0)
-    return Scale(
-        maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
-        closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
-        firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
-        pulse=float(np.percentile(pulses, SEEN_PERCENTILE)) if len(pulses) else float("nan"),
-    )
+    return Scale(maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
+                 closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
+                 firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
+                 pulse=float(np.percentile(pulses, SEEN_PERCENTILE)) if len(pulses) else float("nan"))
 
 
 def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -100,23 +98,15 @@ def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.n
 class Judge:
     """Judges methods by the human motion of a test part."""
 
-    def __init__(
-        self,
-        test: Sequence[Utterance],
-        masks: Sequence[np.ndarray],
-        scale: Scale,
-        phone_set: PhoneSet,
-        fps: int,
-    ) -> None:
+    def __init__(self, test: Sequence[Utterance], masks: Sequence[np.ndarray], scale: Scale, phone_set: PhoneSet,
+                 fps: int) -> None:
         """`masks`: per utterance (T,) bool, the frames that are judged."""
         self._test, self._masks, self._scale = list(test), list(masks), scale
         self._phone_set, self._fps = phone_set, fps
         self._pulsing = has_pulses(phone_set)
         self._human = self._pooled([item.human for item in test])
         self._grouping, self._groups, group_of = groups(phone_set)
-        self._group_at = np.concatenate(
-            [group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)]
-        )
+        self._group_at = np.concatenate([group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)])
         self._joins = [self._unit_joins(item) for item in test]
         self._human_jerk = self._jerk([item.human for item in test])
 

@@ -192,10 +192,8 @@ def _run(task: Tuple[List[Utterance], Split, Options]) -> Outcome:
     return run_split(*task)
 
 
-def evaluate(
-    episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
-    engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None,
-) -> List[Outcome]:
+def evaluate(episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
+             engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None) -> List[Outcome]:
     """All splits of `episodes` in order; Labial's models are trained on `further` ones, too, unless the options
     say otherwise. With `leave_out_talkers` each talker of `further` in turn is left out and judged. The outcomes do not
     depend on `jobs`, the number of processes, nor on `engine` (:class:`labial.train.workers.Workers`). Finished splits

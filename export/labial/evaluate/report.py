@@ -150,9 +150,8 @@ def table_4(outcomes: Sequence[Outcome], kind: str) -> Columns:
     return [(name[len(prefix):], name) for name in found]
 
 
-def markdown_table(
-    outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns, synthetic: bool = False
-) -> str:
+def markdown_table(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns,
+                   synthetic: bool = False) -> str:
     """Methods down, measures across."""
     lines = ["| method | " + " | ".join(name for name, _ in columns) + " |", "|---" * (len(columns) + 1) + "|"]
     for method in methods:
@@ -231,9 +230,8 @@ def _key(name: str, options: Options) -> str:
     return name.replace(HUMAN, "original") if options.synthetic else name
 
 
-def _table_rows(
-    outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns, options: Options
-) -> List[List[object]]:
+def _table_rows(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns,
+                options: Options) -> List[List[object]]:
     rows: List[List[object]] = []
     for method in methods:
         for _, measure in columns:
@@ -360,9 +358,8 @@ def trajectories(example: Example, options: Options, folder: Path) -> str:
     return _finish(figure, every, example, frames, options, folder / "trajectories.png")
 
 
-def _bars(
-    outcomes: Sequence[Outcome], groups: Sequence[Tuple[str, str]], label: str, options: Options, path: Path
-) -> str:
+def _bars(outcomes: Sequence[Outcome], groups: Sequence[Tuple[str, str]], label: str, options: Options,
+          path: Path) -> str:
     """One group of bars per (name, measure), one bar per method, with the deviation over the splits."""
     methods = methods_of(outcomes)
     width = 0.85 / len(methods)

@@ -116,9 +116,8 @@ def _table(path: Path) -> Dict[str, Told]:
     return found
 
 
-def read(
-    folder: PathLike, cache: PathLike, jobs: int = 1, told: Optional[Callable[[int, int], None]] = None
-) -> List[Clip]:
+def read(folder: PathLike, cache: PathLike, jobs: int = 1,
+         told: Optional[Callable[[int, int], None]] = None) -> List[Clip]:
     """The clips of a folder; texts are aligned in `jobs` processes, results are kept in the folder `cache`.
 
     Sounds that their text does not fit, and texts that are not English words, are left out with a warning. `told`

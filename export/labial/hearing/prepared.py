@@ -74,10 +74,8 @@ def is_held(sound: PathLike) -> bool:
     return zlib.crc32(Path(sound).stem.encode("utf-8")) % HELD_OUT == 0
 
 
-def prepare(
-    clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs: int = 1,
-    told: Optional[Callable[[int, int], None]] = None,
-) -> Prepared:
+def prepare(clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs: int = 1,
+            told: Optional[Callable[[int, int], None]] = None) -> Prepared:
     """`takes` of each of `clips`, from the folder `cache` if they were prepared before. `told` receives how many clips
     are done, and how many there are. Raises DataError for a sound that cannot be read."""
     path = os.path.join(cache, f"{_key(clips, takes, seed)}.npz")
@@ -128,9 +126,8 @@ def prepare_clip(clip: Clip, takes: int, seed: int) -> List[_Take]:
     return found
 
 
-def with_pauses(
-    samples: np.ndarray, segments: Sequence[Segment], before: float, after: float
-) -> Tuple[np.ndarray, List[Segment]]:
+def with_pauses(samples: np.ndarray, segments: Sequence[Segment], before: float,
+                after: float) -> Tuple[np.ndarray, List[Segment]]:
     """A sound between digital silence of `before` and `after` seconds, and its segments."""
     lead, tail = round(before * RATE), round(after * RATE)
     shift = lead / RATE

@@ -166,10 +166,8 @@ def restore(learner: Learner, model: HearingModel, mean: np.ndarray, scale: np.n
                     block.memory[:units, at + block.reach.past] = torch.from_numpy(weight[:, tap].copy())
 
 
-def model_of(
-    learner: Learner, mean: np.ndarray, scale: np.ndarray, closure: Closure, edges: Tuple[float, float],
-    attribution: str, training: Dict[str, object],
-) -> HearingModel:
+def model_of(learner: Learner, mean: np.ndarray, scale: np.ndarray, closure: Closure, edges: Tuple[float, float],
+             attribution: str, training: Dict[str, object]) -> HearingModel:
     """The model of a trained network. `mean` and `scale` (13,) are those of the frames that it learned, `edges` the
     scores at which lips begin to close and are closed. The weights are those that the library rounds to."""
 
@@ -322,11 +320,9 @@ class _State:
             raise LabialError(f"{path}: not a checkpoint of train-hear ({type(error).__name__})") from None
 
 
-def train(
-    folders: Sequence[Prepared], options: Options, checkpoint: str, told: Optional[Callable[[str], None]] = None,
-    early: Optional[Path] = None, start: Optional[HearingModel] = None, sounds: Sequence[Prepared] = (),
-    teacher: Optional[HearingModel] = None,
-) -> HearingModel:
+def train(folders: Sequence[Prepared], options: Options, checkpoint: str, told: Optional[Callable[[str], None]] = None,
+          early: Optional[Path] = None, start: Optional[HearingModel] = None, sounds: Sequence[Prepared] = (),
+          teacher: Optional[HearingModel] = None) -> HearingModel:
     """Trains, in one thread, and chooses how lips close by the takes that are held out.
 
     The training continues from the file `checkpoint` if there is one; it is written every `CHECKPOINT` steps. `told`
@@ -366,9 +362,7 @@ def train(
     return model
 
 
-def finished(
-    state: _State, data: _Data, folders: Sequence[Prepared], options: Options
-) -> Tuple[HearingModel, Choice]:
+def finished(state: _State, data: _Data, folders: Sequence[Prepared], options: Options) -> Tuple[HearingModel, Choice]:
     """The model as it is, and what was chosen for it."""
     about: Dict[str, object] = {**asdict(options), "step": state.step, "torch": str(torch.__version__),
                                 "seconds": [round(len(part.classes) * targets.FRAME_MS / 1000) for part in data.parts]}

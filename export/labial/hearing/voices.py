@@ -317,10 +317,8 @@ def _short(line: str) -> str:
     return line if len(line) <= _LONGEST else line[:_LONGEST].rpartition(" ")[0] or line[:_LONGEST]
 
 
-def write_corpus(
-    path: PathLike, sentences: Sequence[str], voices: Sequence[str], minutes: float, seed: int = 0,
-    told: Optional[Callable[[float], None]] = None, strays: bool = True,
-) -> Written:
+def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str], minutes: float, seed: int = 0,
+                 told: Optional[Callable[[float], None]] = None, strays: bool = True) -> Written:
     """Speaks random `sentences` with all of `voices` in turn until there are `minutes` of sound, into the folder
     `path`, new or empty. With `strays` pace and pitch change every few sentences. `told` receives the seconds so far.
 
@@ -353,9 +351,8 @@ def write_corpus(
     raise AssertionError("the voices never end")
 
 
-def _turns(
-    sentences: Sequence[str], voices: Sequence[str], seed: int, strays: bool
-) -> Iterator[Tuple[str, Iterator[Spoken]]]:
+def _turns(sentences: Sequence[str], voices: Sequence[str], seed: int,
+           strays: bool) -> Iterator[Tuple[str, Iterator[Spoken]]]:
     """Voices in turn, each with what it says in one go."""
     turn = 0
     while True:

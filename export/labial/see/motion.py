@@ -47,10 +47,8 @@ class Band:
     kind: str
 
 
-def read_motion(
-    path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
-    tier: Optional[str] = None
-) -> Motion:
+def read_motion(path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
+                tier: Optional[str] = None) -> Motion:
     """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells; or, by a model, makes the motion
     of phoneme timings of the format `source`. Raises DataError; LabialError for a model without timings."""
     name = Path(path).stem
@@ -78,10 +76,8 @@ def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[st
     return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames, sounds)
 
 
-def read_motions(
-    paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
-    tier: Optional[str] = None
-) -> List[Motion]:
+def read_motions(paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO,
+                 source: Optional[str] = None, tier: Optional[str] = None) -> List[Motion]:
     """Reads several as :func:`read_motion` does; where two have the same name, all are called by their paths."""
     motions = [read_motion(path, timings, labels, source, tier) for path in paths]
     if len({motion.name for motion in motions}) < len(motions):
@@ -129,9 +125,8 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(
-    path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None, tier: Optional[str] = None
-) -> List[Band]:
+def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None,
+               tier: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
     Labels are of the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an

@@ -197,9 +197,7 @@ class Alignment:
         return lab_of(self.segments) + comments(self.stretches)
 
 
-def align(
-    path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None
-) -> Tuple[Segment, ...]:
+def align(path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None) -> Tuple[Segment, ...]:
     """The segments of :func:`aligned`."""
     return aligned(path, text, progress).segments
 
@@ -298,10 +296,8 @@ def _found(sound: Sound, recogniser: Recogniser, progress: Optional[Progress]) -
     return pieces
 
 
-def _followed(
-    path: PathLike, sound: Sound, phrases: Sequence[Sequence[str]], recogniser: Recogniser,
-    progress: Optional[Progress],
-) -> List[Piece]:
+def _followed(path: PathLike, sound: Sound, phrases: Sequence[Sequence[str]], recogniser: Recogniser,
+              progress: Optional[Progress]) -> List[Piece]:
     """Pieces that follow the text: each is searched with a part of the next one, since the sound after a word helps to
     place it. A piece that does not fit is searched again, for phrases of the text and phonemes between them."""
     words = [word for phrase in phrases for word in phrase]

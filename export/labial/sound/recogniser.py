@@ -214,9 +214,8 @@ _SHORTEST_PAUSE = 0.05
 _STOPS = ("P", "B", "T", "D", "K", "G", "CH", "JH")
 
 
-def with_silences(
-    segments: Sequence[Segment], silences: Sequence[Tuple[float, float]], length: float, silence: str = "SIL"
-) -> List[Segment]:
+def with_silences(segments: Sequence[Segment], silences: Sequence[Tuple[float, float]], length: float,
+                  silence: str = "SIL") -> List[Segment]:
     """`segments` of ARPABET phonemes brought to the sound's own silences (begin and end, seconds): they end where a
     silence begins and begin where it ends, a stop `LONGEST_CLOSURE` before. `length` is the sound's, in seconds.
 
@@ -240,10 +239,8 @@ def with_silences(
     return _closed(sounding, times, silences, length, silence)
 
 
-def _closed(
-    sounding: Sequence[Segment], times: Sequence[Sequence[float]], silences: Sequence[Tuple[float, float]],
-    length: float, silence: str,
-) -> List[Segment]:
+def _closed(sounding: Sequence[Segment], times: Sequence[Sequence[float]], silences: Sequence[Tuple[float, float]],
+            length: float, silence: str) -> List[Segment]:
     """The segments at `times`, without gaps: a gap is silence where the sound is silent for long enough; else the stop
     behind it begins there, or the phoneme before it goes on."""
     result: List[Segment] = []

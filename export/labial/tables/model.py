@@ -320,10 +320,5 @@ def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.nd
         meets[model.phonemes.index(model.silence)] = False
         own[meets] = 1.0
     of_component = np.repeat(own, model.component_count, axis=0)
-    return replace(
-        model,
-        shape=centre + (model.shape - centre) * of_component,
-        slope=model.slope * of_component,
-        kernel=model.kernel * factor,
-        pair_shape=model.pair_shape * factor,
-    )
+    return replace(model, shape=centre + (model.shape - centre) * of_component, slope=model.slope * of_component,
+                   kernel=model.kernel * factor, pair_shape=model.pair_shape * factor)

@@ -141,9 +141,8 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
     order = np.argsort(pair_keys)
     channels = solved(model.source)
     floor, floors, contacts = _floors(model, centre, channels)
-    positions = _positions(
-        model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
-    )
+    positions = _positions(model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]),
+                           "state_mean")
     motion, motion_scale = _motion(model.state_mean[..., 1:] * POSITION_SCALE)
     hold, weights, firm = state_weights(model, scaled(motion, motion_scale))
     names = phone_set(model)

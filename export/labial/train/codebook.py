@@ -151,9 +151,8 @@ def _means(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray,
     return count, total / np.maximum(count, 1)[:, None]
 
 
-def lloyd(
-    points: np.ndarray, centres: np.ndarray, tolerance: float = TOLERANCE
-) -> Tuple[np.ndarray, np.ndarray, float]:
+def lloyd(points: np.ndarray, centres: np.ndarray,
+          tolerance: float = TOLERANCE) -> Tuple[np.ndarray, np.ndarray, float]:
     """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance.
 
     A centre that loses all its points moves beside the centre of the cell with the largest distortion, which it splits.
@@ -237,14 +236,8 @@ def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: in
     return result
 
 
-def train_channel(
-    motion: Sequence[np.ndarray],
-    starts: Sequence[np.ndarray],
-    size: int,
-    stride: int = 1,
-    divide: Division = lbg,
-    normalised: bool = True,
-) -> Codebook:
+def train_channel(motion: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int, stride: int = 1,
+                  divide: Division = lbg, normalised: bool = True) -> Codebook:
     """The codebook of one channel.
 
     `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
@@ -265,10 +258,5 @@ def train_channel(
     rank[order] = np.arange(size)
     ends = np.cumsum([len(item) for item in motion])[:-1]
     paths: List[np.ndarray] = np.split(rank[cell], ends)
-    return Codebook(
-        mean=mean[order],
-        variance=variance[order],
-        count=count[order],
-        log_transition=transitions(paths, size, stride),
-        log_initial=initials(paths, starts, size),
-    )
+    return Codebook(mean=mean[order], variance=variance[order], count=count[order],
+                    log_transition=transitions(paths, size, stride), log_initial=initials(paths, starts, size))

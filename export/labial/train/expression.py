@@ -133,9 +133,7 @@ RANGE = (5.0, 95.0)
 LARGEST_GAIN = 3.0
 
 
-def gains(
-    model: Model, material: Sequence[Recording], workers: Workers
-) -> Tuple[np.ndarray, np.ndarray]:
+def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tuple[np.ndarray, np.ndarray]:
     """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE, in the corners
     CORNERS, and the pose (13,), FAP, about which it is to be widened."""
     goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
@@ -158,9 +156,8 @@ def gains(
     return gain, middle
 
 
-def shared_gains(
-    model: Model, material: Sequence[Recording], workers: Workers, counts: Mapping[str, float]
-) -> Tuple[np.ndarray, np.ndarray]:
+def shared_gains(model: Model, material: Sequence[Recording], workers: Workers,
+                 counts: Mapping[str, float]) -> Tuple[np.ndarray, np.ndarray]:
     """The gain of each channel (13,) with which the model moves SHARED times as far as talkers do, and the pose (13,),
     FAP, about which it is to be widened. How far is the standard deviation within utterances, outside silence; the
     model's on a talker's phonemes is divided by his own in his own units, and the quotients' geometric mean is taken
@@ -193,9 +190,8 @@ def shared_gains(
     return gain, middle
 
 
-def within(
-    motion: Sequence[np.ndarray], learnt: Sequence[np.ndarray], names: Sequence[str]
-) -> Dict[str, Tuple[np.ndarray, np.ndarray]]:
+def within(motion: Sequence[np.ndarray], learnt: Sequence[np.ndarray],
+           names: Sequence[str]) -> Dict[str, Tuple[np.ndarray, np.ndarray]]:
     """By talker, the standard deviations (13,) of his utterances' motion (T, 13) about their means, of the values that
     `learnt` (T, 13) selects, and how many (13,) they are."""
     squares: Dict[str, np.ndarray] = {}

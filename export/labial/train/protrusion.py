@@ -68,9 +68,8 @@ def with_protrusion(model: Model, material: Sequence[Recording], workers: Worker
     return replace(model, protrusion=np.round(values, 3), protrusion_range=np.round(own, 3), source=source)
 
 
-def _stretched(
-    model: Model, material: Sequence[Recording], workers: Workers, ends: np.ndarray, values: np.ndarray
-) -> Optional[np.ndarray]:
+def _stretched(model: Model, material: Sequence[Recording], workers: Workers, ends: np.ndarray,
+               values: np.ndarray) -> Optional[np.ndarray]:
     """The range (2,) over which the model's FAP 17 moves by AMPLITUDE of the recordings', outside silence; it is
     stretched about the mean of the model's corners."""
     silence = model.phonemes.index(model.silence)

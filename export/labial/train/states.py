@@ -62,16 +62,10 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
     """The paper's tables: the codebook's cells, without anchors."""
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
-    return StateTables(
-        emission_mean=mean[..., 0].copy(),
-        emission_variance=variance[..., 0].copy(),
-        state_mean=mean,
-        state_precision=1.0 / variance,
-        state_anchor=np.zeros(mean.shape[:2]),
-        log_transition=np.stack([book.log_transition for book in codebooks]),
-        log_initial=np.stack([book.log_initial for book in codebooks]),
-        stride=stride,
-    )
+    return StateTables(emission_mean=mean[..., 0].copy(), emission_variance=variance[..., 0].copy(), state_mean=mean,
+                       state_precision=1.0 / variance, state_anchor=np.zeros(mean.shape[:2]),
+                       log_transition=np.stack([book.log_transition for book in codebooks]),
+                       log_initial=np.stack([book.log_initial for book in codebooks]), stride=stride)
 
 
 def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
@@ -81,9 +75,8 @@ def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: St
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
-def state_moments(
-    values: np.ndarray, weight: np.ndarray, path: np.ndarray, prior_mean: np.ndarray
-) -> Tuple[np.ndarray, np.ndarray]:
+def state_moments(values: np.ndarray, weight: np.ndarray, path: np.ndarray,
+                  prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Means and variances (Q,) of the values (n,), counting by weight (n,), under each state of the path (n,), with
     PRIOR_FRAMES."""
     size = len(prior_mean)
@@ -108,14 +101,8 @@ class DecodedChannel:
     floor: np.ndarray  #: (3,) the least variance
 
 
-def decoded_channel(
-    tables: StateTables,
-    channel: int,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-) -> DecodedChannel:
+def decoded_channel(tables: StateTables, channel: int, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                    human: Sequence[np.ndarray], weights: Sequence[np.ndarray]) -> DecodedChannel:
     """One channel of decoded paths, targets, human motion and its weights (T, C); copies are made of this one only."""
     states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
                                       for items in (paths, targets, human, weights))
@@ -127,14 +114,8 @@ def decoded_channel(
     return DecodedChannel(states, target, motion, weight, mean, variance, floor)
 
 
-def match_states(
-    tables: StateTables,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-    scales: Scales,
-) -> StateTables:
+def match_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                 human: Sequence[np.ndarray], weights: Sequence[np.ndarray], scales: Scales) -> StateTables:
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, C) of targets and
     human motion (T, C) in FAP, whose values count by `weights` (T, C). The emissions of the search are unchanged."""
     count, size = tables.emission_mean.shape
@@ -220,13 +201,10 @@ def chain(task: ChannelTask) -> Chain:
     mean, variance = (np.stack(items, axis=1) for items in zip(*moments))
     seen, strayed = state_moments(targets, np.ones(len(cell)), cell, centres)
     paths = np.split(cell, np.cumsum([len(item) for item in task.motion])[:-1])
-    book = Codebook(
-        mean=mean,
-        variance=np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6)),
-        count=np.bincount(cell, minlength=task.size),
-        log_transition=transitions(paths, task.size, task.stride),
-        log_initial=initials(paths, task.begins, task.size),
-    )
+    book = Codebook(mean=mean, variance=np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6)),
+                    count=np.bincount(cell, minlength=task.size),
+                    log_transition=transitions(paths, task.size, task.stride),
+                    log_initial=initials(paths, task.begins, task.size))
     least = max(VARIANCE_FLOOR * float(overall[0]), 1e-6)
     return Chain(book, np.maximum.accumulate(seen), ALIKE * np.maximum(strayed, least))
 
@@ -238,14 +216,8 @@ def chain_tables(chains: Sequence[Chain], stride: int) -> StateTables:
                    emission_variance=np.stack([item.variance for item in chains]))
 
 
-def balance_states(
-    tables: StateTables,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-    scales: Scales,
-) -> StateTables:
+def balance_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                   human: Sequence[np.ndarray], weights: Sequence[np.ndarray], scales: Scales) -> StateTables:
     """The tables with means, precisions and anchors estimated on decoded paths (T, 13) of targets and human motion
     (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees stays as it is.
 

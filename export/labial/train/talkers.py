@@ -114,9 +114,8 @@ class Equations:
         return covariance[:, self.columns] @ np.linalg.solve(np.eye(len(own)) + self.normal @ own, left)
 
 
-def equations_of(
-    asked: Regression, material: Sequence[Recording], choice: Choice, base: np.ndarray
-) -> Dict[int, Tuple[Equations, int]]:
+def equations_of(asked: Regression, material: Sequence[Recording], choice: Choice,
+                 base: np.ndarray) -> Dict[int, Tuple[Equations, int]]:
     """By channel, for those that the talker of `material` teaches: his equations and which column of their right sides
     is the channel's."""
     found: Dict[int, Tuple[Equations, int]] = {}
@@ -131,9 +130,8 @@ def equations_of(
     return found
 
 
-def deviation_of(
-    found: Dict[int, Tuple[Equations, int]], channels: np.ndarray, covariance: np.ndarray, shared: np.ndarray
-) -> np.ndarray:
+def deviation_of(found: Dict[int, Tuple[Equations, int]], channels: np.ndarray, covariance: np.ndarray,
+                 shared: np.ndarray) -> np.ndarray:
     """(D, C) a talker's deviation from the shared coefficients (D, 13) in `channels` (C,), which have the same
     equations but for their right sides; V is `covariance` (D, D)."""
     equations = found[int(channels[0])][0]
@@ -157,10 +155,8 @@ def weights_of(material: Sequence[Recording]) -> Dict[str, float]:
     return counts
 
 
-def fit_talkers(
-    asked: Regression, material: Sequence[Recording], choice: Choice, variance: float,
-    counts: Optional[Mapping[str, float]] = None,
-) -> Tuple[Kernels, Dict[str, Kernels]]:
+def fit_talkers(asked: Regression, material: Sequence[Recording], choice: Choice, variance: float,
+                counts: Optional[Mapping[str, float]] = None) -> Tuple[Kernels, Dict[str, Kernels]]:
     """What all talkers of `material` share, and each talker's own, by name; `choice` are the components of the
     material's occurrences, `variance` is v, `counts` says how much each talker counts for what they share."""
     base, prior = asked.base(material, choice), asked.prior()
@@ -193,9 +189,7 @@ def fit_talkers(
 KEYS = ("variance", "deviation", "gain", "middle")
 
 
-def about_talkers(
-    variance: float, deviation: np.ndarray, gain: np.ndarray, middle: np.ndarray
-) -> Dict[str, object]:
+def about_talkers(variance: float, deviation: np.ndarray, gain: np.ndarray, middle: np.ndarray) -> Dict[str, object]:
     """For `Model.training["talkers"]`: the variance of talkers; the standard deviation of their motion outside silence,
     FAP, all being of one scale; by what gain the model was widened, about what pose, FAP."""
     return {"variance": variance, "deviation": deviation.tolist(), "gain": gain.tolist(), "middle": middle.tolist()}
@@ -235,9 +229,7 @@ def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarr
             for item in recordings(scaled, phone_set, model.fps)]
 
 
-def _deviation(
-    model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray
-) -> Kernels:
+def _deviation(model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray) -> Kernels:
     """The deviation to add to the model, which is not widened, with pairs in ascending `order` (R,)."""
     silence = model.phonemes.index(model.silence)
     key = model.pair_key[order]
@@ -245,11 +237,9 @@ def _deviation(
     shared = Kernels(model.kernel, model.kernel_lag, tables, key, model.pair_shape[order])
     items = occurrences(material, PHONE_SETS[model.kind])
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    asked = Regression(
-        tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
-        code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
-        penalties_of(float(about["variance"])), model.pair_shape.shape[1],
-    )
+    asked = Regression(tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
+                       code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
+                       penalties_of(float(about["variance"])), model.pair_shape.shape[1])
     made = targets_without_floors(choice, [shared] * len(material), material, silence)
     left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
     covariance = covariance_of(asked.prior(), float(about["variance"]))
@@ -284,13 +274,8 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
         plain = widened(model, 1.0 / about["gain"], about["middle"], contacts=False)
         own = _deviation(plain, material, about, order)
         back = np.argsort(order)
-        plain = replace(
-            plain,
-            shape=plain.shape + own.tables.shape,
-            slope=plain.slope + own.tables.slope,
-            kernel=plain.kernel + own.kernel,
-            pair_shape=plain.pair_shape + own.pair_shape[back],
-        )
+        plain = replace(plain, shape=plain.shape + own.tables.shape, slope=plain.slope + own.tables.slope,
+                        kernel=plain.kernel + own.kernel, pair_shape=plain.pair_shape + own.pair_shape[back])
         gain = _gain(plain, material, about)
     frames = sum(len(item.frames) for item in material)
     return replace(

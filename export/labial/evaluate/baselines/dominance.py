@@ -87,9 +87,8 @@ def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
     return Parameters(x[:phonemes], x[phonemes : 2 * phonemes], x[2 * phonemes :].reshape(-1, 2))
 
 
-def objective(
-    around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
-) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
+def objective(around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float,
+              prior: float) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
     """The objective, which returns its value and gradient at a vector of parameters, and the starting point.
 
     `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
@@ -120,9 +119,8 @@ def objective(
     return loss, np.concatenate([centre, np.zeros(phonemes + rates)])
 
 
-def fit_channel(
-    around: Near, motion: np.ndarray, start: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
-) -> Parameters:
+def fit_channel(around: Near, motion: np.ndarray, start: np.ndarray, viseme_class: np.ndarray, exponent: float,
+                prior: float) -> Parameters:
     """Fits one channel's motion (T,); `start` (P,) are the phonemes' means. Both FAP."""
     scale = max(float(motion.std()), 1e-9)
     loss, begin = objective(around, motion / scale, start / scale, viseme_class, exponent, prior)
@@ -162,9 +160,8 @@ def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray
     return result
 
 
-def _fit(
-    utterances: Sequence[Utterance], training: Training, exponent: float, prior: float, channels: Sequence[int]
-) -> Dominance:
+def _fit(utterances: Sequence[Utterance], training: Training, exponent: float, prior: float,
+         channels: Sequence[int]) -> Dominance:
     viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
     speech = [item.timeline.phoneme_at != training.silence for item in utterances]
     parts = [near(item.timeline, training.fps) for item in utterances]
