@@ -30,11 +30,9 @@ def run_timings(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     from labial.corpus.formats import as_lab
     from labial.corpus.words import Pronunciation
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    if options.output:
-        check_suffix(options.output, ".lab")
+    check(options.output, ".lab")
     how = Pronunciation(language=options.language)
     offset = options.offset_ms / 1000.0
     put(as_lab(options.phones, options.labels, options.source, how, offset, options.tier), options.output)
@@ -57,11 +55,9 @@ def run_align(options: argparse.Namespace) -> int:
     with needs("aligning", "align"):
         from labial.sound.align import align_with_bar
         from labial.sound.recogniser import summary
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    if options.output:
-        check_suffix(options.output, ".lab")
+    check(options.output, ".lab")
     found = align_with_bar(options.sound, said(options), shows_progress(options))
     put(found.lab(), options.output)
     if found.stretches and not options.quiet:
@@ -85,10 +81,9 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
 
 def run_landmarks(options: argparse.Namespace) -> int:
     """Writes the landmarks."""
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    check_suffix(options.output, ".npz")
+    check(options.output, ".npz")
     with needs("tracking", "record"):
         from labial.capture.track import landmarks
 

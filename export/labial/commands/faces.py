@@ -169,12 +169,11 @@ def add_page(command: argparse.ArgumentParser) -> None:
 
 def run_page(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    check(options.output)
-    check_suffix(options.output, ".html", ".htm")
+    check(options.output, ".html", ".htm")
     timings = _timings(options)
     bands, motion = read_bands(*timings), read_motion(options.frames, *timings)
     if options.head is None:

@@ -8,13 +8,12 @@ import importlib.util
 import sys
 import warnings
 import wave
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from pathlib import Path
 from typing import (
     TYPE_CHECKING,
     Any,
     BinaryIO,
-    ContextManager,
     Iterator,
     List,
     NamedTuple,
@@ -24,7 +23,7 @@ from typing import (
     cast,
 )
 
-from labial.commands.common import add_format, add_phones, add_said, format_of, said
+from labial.commands.common import add_format, add_phones, add_said, format_of, opened, said
 from labial.errors import DataError, LabialError, needs
 from labial.files import wav
 from labial.files.grammar import whole
@@ -72,7 +71,7 @@ def run_hear(options: argparse.Namespace) -> int:
     """Writes the frames."""
     import numpy as np
 
-    from labial.files.outputs import check, writing
+    from labial.files.outputs import check
     from labial.runtime.hearing import FPS, Hearing
 
     check(options.output)
@@ -102,8 +101,7 @@ def run_hear(options: argparse.Namespace) -> int:
         if options.to == "fap":  # whose head has the number of frames
             whole_motion = np.concatenate([np.zeros((0, 13)), *parts])
             parts, count = iter([whole_motion]), len(whole_motion)
-        opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
-        with opened as out:
+        with opened(options.output) as out:
             form.write(out, _flushed(parts, out), FPS, Path(options.sound).stem, count)
     return 0
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import functools
 import sys
-from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ContextManager, Tuple
+from typing import TYPE_CHECKING, Tuple
 
 from labial.commands.common import (
     add_format,
@@ -16,6 +15,7 @@ from labial.commands.common import (
     add_said,
     add_source,
     format_of,
+    opened,
     said,
     shows_progress,
 )
@@ -57,7 +57,7 @@ def run_synth(options: argparse.Namespace) -> int:
 
     from labial.files.faps import CHANNELS
     from labial.files.frames import at_rate
-    from labial.files.outputs import check, writing
+    from labial.files.outputs import check
     from labial.reference.synthesis import delivered
     from labial.rig.animation import with_shares
     from labial.tables.model import load
@@ -72,8 +72,7 @@ def run_synth(options: argparse.Namespace) -> int:
         model, phonemes, whole=options.whole, articulation=options.articulation, exact=options.exact)])
     spoken = [(model.phonemes[phoneme], milliseconds) for phoneme, milliseconds in phonemes]
     frames = at_rate(with_shares(motion, spoken, model.fps), model.fps, fps)
-    opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
-    with opened as out:
+    with opened(options.output) as out:
         form.write(out, [frames], fps, name, len(frames))
     return 0
 

@@ -131,10 +131,17 @@ def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
                 item.rmdir()
 
 
-def check(path: Optional[PathLike]) -> None:
-    """Raises LabialError unless a file can be written at `path`; call it before the work. None is standard output."""
+def check(path: Optional[PathLike], *suffixes: str) -> None:
+    """Raises LabialError unless a file can be written at `path`, whose name ends in one of `suffixes` if there are any;
+    call it before the work. None is standard output."""
     if path is None:
         return
+    _check_target(path)
+    if suffixes:
+        check_suffix(path, *suffixes)
+
+
+def _check_target(path: PathLike) -> None:
     with _named(path):
         target = _resolved(path)
         if target is None:
