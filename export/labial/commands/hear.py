@@ -10,18 +10,7 @@ import warnings
 import wave
 from contextlib import suppress
 from pathlib import Path
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    BinaryIO,
-    Iterator,
-    List,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    cast,
-)
+from typing import TYPE_CHECKING, Any, BinaryIO, Iterator, List, NamedTuple, Optional, Sequence, Tuple, cast
 
 from labial.commands.common import add_format, add_phones, add_said, format_of, opened, said
 from labial.errors import DataError, LabialError, needs

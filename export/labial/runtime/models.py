@@ -9,17 +9,7 @@ from functools import cache
 from typing import Any, List, Optional, Tuple, Union
 
 from labial.core.guard import whole
-from labial.core.library import (
-    BLOB_MAGIC,
-    ERROR_NAME,
-    ERROR_PHONEME,
-    OK,
-    checked,
-    failure,
-    library,
-    memory,
-    sentence,
-)
+from labial.core.library import BLOB_MAGIC, ERROR_NAME, ERROR_PHONEME, OK, checked, failure, library, memory, sentence
 from labial.corpus.labels import LABEL_SETS
 from labial.errors import LabialError, ModelError, StreamError
 from labial.files import limits
