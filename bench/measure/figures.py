@@ -8,6 +8,7 @@ page says when it was measured.
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
 from measure import baseline, records
@@ -55,24 +56,15 @@ class Talkers:
         """Those of the talkers who speak freely, or of the others."""
         return [value for talker, value in self.each.items() if (talker in FREE) == free]
 
-    @staticmethod
-    def mean(values: Sequence[float]) -> float:
-        """Their mean."""
-        return sum(values) / len(values)
-
-    @staticmethod
-    def error(values: Sequence[float]) -> float:
-        """The standard error of their mean."""
-        mean = Talkers.mean(values)
-        return float((sum((value - mean) ** 2 for value in values) / (len(values) - 1) / len(values)) ** 0.5)
-
     def cells(self) -> List[str]:
         """Mean of those who speak freely; mean and standard error of the others; of all."""
         free, others, everyone = self.of(True), self.of(False), list(self.each.values())
-        found = [share(self.mean(free))]
-        for values in (others, everyone):
-            found += [share(self.mean(values)), share(self.error(values))]
-        return found
+        return [share(fmean(free)), *_mean_and_error(others), *_mean_and_error(everyone)]
+
+
+def _mean_and_error(values: Sequence[float]) -> List[str]:
+    """The mean, and its standard error."""
+    return [share(fmean(values)), share(stdev(values) / len(values) ** 0.5)]
 
 
 def _talkers(source: Sources) -> Dict[str, Talkers]:
@@ -462,11 +454,9 @@ def results(source: Sources) -> Iterator[Sentence]:
     talkers = _talkers(source)["voice"]
     free, others, everyone = talkers.of(True), talkers.of(False), list(talkers.each.values())
     yield sentence("Summary, other people: on {} labels of talkers of whom the training has nothing, the device's "
-                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), share(talkers.mean(everyone)),
-                   share(talkers.error(everyone)))
+                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), *_mean_and_error(everyone))
     yield sentence("by {} with {} who speak freely, by {} ± {} with {} labels of other talkers of GRID",
-                   share(talkers.mean(free)), word(len(free)), share(talkers.mean(others)),
-                   share(talkers.error(others)), word(len(others)))
+                   share(fmean(free)), word(len(free)), *_mean_and_error(others), word(len(others)))
     alone = _talkers(source)["method"]
     yield sentence("Trained on s1 alone it reaches {} ± {}, and the published method {} ± {}",
                    *(figure for one in (alone, _talkers(source)["paper"]) for figure in one.cells()[3:]))
@@ -528,23 +518,9 @@ def streams(source: Sources) -> Iterator[Sentence]:
 
 #: Every page with figures.
 PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
-    "README.md": readme,
-    "DESIGN.md": design,
-    "export/RESULTS.md": results,
-    "docs/arduino.md": arduino,
-    "docs/beside.md": beside,
-    "docs/browser.md": browser,
-    "docs/esp32-hear.md": esp32_hear,
-    "docs/experiments.md": experiments,
-    "docs/figures.md": costs,
-    "docs/hearing.md": hearing,
-    "docs/laughing.md": laughing,
-    "docs/method.md": method,
-    "docs/packages.md": packages,
-    "docs/porting.md": porting,
-    "docs/python.md": python,
-    "docs/reproduction.md": reproduction,
-    "docs/servos.md": servos,
-    "docs/streams.md": streams,
-    "docs/words.md": words,
-}
+    "README.md": readme, "DESIGN.md": design, "export/RESULTS.md": results, "docs/arduino.md": arduino,
+    "docs/beside.md": beside, "docs/browser.md": browser, "docs/esp32-hear.md": esp32_hear,
+    "docs/experiments.md": experiments, "docs/figures.md": costs, "docs/hearing.md": hearing,
+    "docs/laughing.md": laughing, "docs/method.md": method, "docs/packages.md": packages, "docs/porting.md": porting,
+    "docs/python.md": python, "docs/reproduction.md": reproduction, "docs/servos.md": servos,
+    "docs/streams.md": streams, "docs/words.md": words}
