@@ -20,7 +20,7 @@ from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model, widened
 from labial.tables.quantise import LIMITS
 from labial.train.codebook import Codebook, Division, lbg, train_channel
-from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains
+from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains, with_protrusion
 from labial.train.kernels import (
     PAIR_KNOTS,
     REACH,
@@ -31,7 +31,6 @@ from labial.train.kernels import (
     regression,
     targets_without_floors,
 )
-from labial.train.protrusion import with_protrusion
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_context, fit_mixture, shape_tables
 from labial.train.states import (
