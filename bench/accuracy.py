@@ -37,10 +37,8 @@ from labial.tables.quantise import ExportedModel, quantise
 
 #: Episodes of a corpus that are used, evenly spread over it.
 EPISODES = 60
-
 #: Most frames of SOLVER, BENCH_SOLVE of unit.h.
 LONGEST = 400
-
 #: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
 #: (LABIAL_POSITION_MAX).
 UNIT = 1.0

@@ -20,7 +20,6 @@ from measure.sources import Sources, Table, number
 
 #: Columns of the boards' tables, and the host's.
 TARGETS = [board.preset for board in BOARDS]
-
 #: Sections of RESULTS.md, and their tables in order.
 TALKERS, RANDOM, UNSEEN = "Talkers left out", "Random splits", "Unseen words"
 LAUGHTER, HEARD = "Laughter: synthetic data", "Lips from sound"
@@ -33,7 +32,6 @@ BLUR, MEAN, DOMINANCE, REGRESSION = ("steps + Gaussian blur", "mean shape", "Coh
                                      "linear regression")
 HMM = "HMM synthesis"
 PARAMETERS = ("openness", "extension", "top", "bottom")
-
 #: Talkers of RESULTS.md who speak freely; all others say commands.
 FREE = ("a", "b")
 
@@ -161,8 +159,6 @@ _VOICE = ("voice", "voice_frames", "voice_items", "voice_messages", "voice_plan"
 #: What pages fetch from npm, compressed, in bench/baseline.json.
 _NPM = ("a page that speaks, each script compressed", "laughter, compressed", "words, each script compressed",
         "hearing by the small model, each script compressed", "hearing by the large model, each script compressed")
-
-
 #: The states in DESIGN.md's table of modules: what it says of their parts, and of RAM beside the state.
 _STATES = {"labial_t": ("", " + workspace"),
            "labial_hear_t": (": features, network, convert, motion, fade", " + workspace"),
@@ -337,8 +333,6 @@ def hearing(source: Sources) -> Iterator[Sentence]:
 _SOUNDS = {"125 people (169 clips)": "talkers/judge", "flite's awb": "flite:awb",
            "espeak-ng's klatt4": "espeak:en-us+klatt4", "espeak-ng's f5": "espeak:en-us+f5",
            "espeak-ng's Jacky": "espeak:en-us+Jacky"}
-
-
 #: Groups of real lips and their names in the pages; methods, and the records that have them.
 _GROUPS = {"grid_singles+grid_more": "GRID", "addresses": "addresses"}
 _LIPS = {"`hear_ahead`": ("hear_ahead", "integers"), "`hear_host`": ("hear_host", "integers"),

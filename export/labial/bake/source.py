@@ -22,7 +22,6 @@ from labial.tables.model import Model, load
 from labial.tables.phones import Stream, phone_set, stream_of
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Suffixes, in small letters, of frames; other files are sounds or timings.
 FRAMES = (".csv", ".fap")
 #: Frames per second of a track.

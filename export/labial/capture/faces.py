@@ -14,7 +14,6 @@ from labial.errors import DataError
 from labial.files.frames import spans_told
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: A face that is lost for longer, in seconds, starts a new track, which is joined to the old one if both are in one
 #: place.
 _LINK = 0.5

@@ -29,7 +29,6 @@ from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.grammar import columns_of, number_or_nan, read_bytes, read_lines, table_rows
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Landmarks that follow the skull: the corners of both eyes, the bridge of the nose, the forehead.
 HEAD = (33, 133, 362, 263, 168, 6, 197, 195, 151, 10)
 #: Middle and half-way points of the outer lip's contour, its corners, the middle of the inner lips.

@@ -23,7 +23,6 @@ from labial.sound.video import length, pictures
 PathLike = Union[str, os.PathLike[str]]
 #: Landmarks (478, 3) in pixels and mouthPucker score, NaN where it is not known, of each face of a picture.
 Faces = List[Tuple[np.ndarray, float]]
-
 #: Faces that are looked for in a picture.
 MOST_FACES = 4
 

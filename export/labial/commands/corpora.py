@@ -11,8 +11,6 @@ from labial.defaults import EPISODES, WHICH_FACE
 from labial.errors import needs
 from labial.files.grammar import finite, positive, seed
 
-# ---- timings ---------------------------------------------------------------------------------------------------------
-
 
 def add_timings(command: argparse.ArgumentParser) -> None:
     """Timings and the output file."""
@@ -39,9 +37,6 @@ def run_timings(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- align -----------------------------------------------------------------------------------------------------------
-
-
 def add_align(command: argparse.ArgumentParser) -> None:
     """A sound and its text."""
     command.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
@@ -65,9 +60,6 @@ def run_align(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- landmarks -------------------------------------------------------------------------------------------------------
-
-
 def add_landmarks(command: argparse.ArgumentParser) -> None:
     """A video, and the face to track."""
     command.add_argument("video", metavar="VIDEO")
@@ -89,9 +81,6 @@ def run_landmarks(options: argparse.Namespace) -> int:
 
     print(landmarks(options.video, options.output, options.face, options.task, progress=shows_progress(options)))
     return 0
-
-
-# ---- record ----------------------------------------------------------------------------------------------------------
 
 
 def add_record(command: argparse.ArgumentParser) -> None:
@@ -122,9 +111,6 @@ def run_record(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- laughter-corpus -------------------------------------------------------------------------------------------------
-
-
 def add_laughter_corpus(command: argparse.ArgumentParser) -> None:
     """A folder, the number of episodes and the seed."""
     command.add_argument("output", metavar="OUT", help="folder, new or empty")
@@ -139,9 +125,6 @@ def run_laughter_corpus(options: argparse.Namespace) -> int:
     generate(options.output, episodes=options.episodes, seed=options.seed)
     print(f"{options.output}: {options.episodes} synthetic episodes")
     return 0
-
-
-# ---- speech-corpus ---------------------------------------------------------------------------------------------------
 
 
 def add_speech_corpus(command: argparse.ArgumentParser) -> None:

@@ -10,8 +10,6 @@ from labial import BUNDLED
 from labial.commands.common import add_phones, put
 from labial.errors import LabialError, needs
 
-# ---- rig -------------------------------------------------------------------------------------------------------------
-
 
 def add_rig(command: argparse.ArgumentParser) -> None:
     """The description, and the output files."""
@@ -50,9 +48,6 @@ def run_rig(options: argparse.Namespace) -> int:
     for path in paths:
         print(Path(options.output) / path.name)
     return 0
-
-
-# ---- fit -------------------------------------------------------------------------------------------------------------
 
 
 def add_fit(command: argparse.ArgumentParser) -> None:
@@ -110,9 +105,6 @@ def run_fit(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- plot ------------------------------------------------------------------------------------------------------------
-
-
 def add_plot(command: argparse.ArgumentParser) -> None:
     """Motions, their phonemes, and the channels to draw."""
     command.add_argument("frames", metavar="FRAMES", nargs="+",
@@ -147,9 +139,6 @@ def _timings(options: argparse.Namespace) -> Tuple[Any, str, Optional[str], Opti
     from labial.corpus.formats import stored
 
     return options.phones and stored(options.phones), options.labels, options.source, options.tier
-
-
-# ---- page ------------------------------------------------------------------------------------------------------------
 
 
 def add_page(command: argparse.ArgumentParser) -> None:

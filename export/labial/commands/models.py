@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from labial.tables.model import Model
     from labial.tables.quantise import ExportedModel
 
-# ---- synth -----------------------------------------------------------------------------------------------------------
-
 
 def add_synth(command: argparse.ArgumentParser) -> None:
     """A model, timings and the format of the frames."""
@@ -75,9 +73,6 @@ def run_synth(options: argparse.Namespace) -> int:
     with opened(options.output) as out:
         form.write(out, [frames], fps, name, len(frames))
     return 0
-
-
-# ---- export ----------------------------------------------------------------------------------------------------------
 
 
 def add_export(command: argparse.ArgumentParser) -> None:
@@ -167,9 +162,6 @@ def _export_words(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- check -----------------------------------------------------------------------------------------------------------
-
-
 def add_check(command: argparse.ArgumentParser) -> None:
     """A model and timings."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
@@ -192,9 +184,6 @@ def run_check(options: argparse.Namespace) -> int:
     for failure in failures:
         print(f"labial check: {failure}", file=sys.stderr)
     return 1 if failures else 0
-
-
-# ---- bake ------------------------------------------------------------------------------------------------------------
 
 
 def add_bake(command: argparse.ArgumentParser) -> None:

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 LEAST, FEW = 15, 120
 #: The same of what a model is adapted to: what is learnt is less, the less there is.
 LEAST_OF_TALKER, FEW_OF_TALKER = 5, 30
-
 #: Prepared takes of each clip of ``train-hear`` without --takes.
 TAKES = 2
-
 #: The options that ``--adapt`` does not use.
 _OF_TRAINING = ("kind", "method", "fps", "codebook", "components", "look_ahead", "search_stride", "talker_variance",
                 "asymmetric", "normalise", "seed", "engine")

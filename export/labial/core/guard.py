@@ -16,7 +16,6 @@ from labial.core.library import DURATION_MAX, ERROR_DURATION, ERROR_STATE, failu
 from labial.errors import StreamError
 
 Method = TypeVar("Method", bound=Callable[..., Any])
-
 #: Milliseconds: no sound of speech is shorter.
 SHORTEST = 5.0
 

@@ -17,7 +17,6 @@ from labial.errors import DataError
 from labial.files import wav
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Seconds of the window: at least two periods of a low voice, so that the envelope does not follow glottal pulses.
 WINDOW = 0.025
 #: Seconds from one value of the envelope to the next.

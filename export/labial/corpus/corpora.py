@@ -31,7 +31,6 @@ from labial.errors import DataError, LabialError
 from labial.files.frames import sampled
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Names of the corpus's files: subject, begin and end in milliseconds.
 NAME = re.compile(r"\d+_\d+_\d+")
 #: Label of an interval of tier 2 that holds speech.

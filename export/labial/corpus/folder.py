@@ -22,7 +22,6 @@ from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.files.grammar import Content, columns_of, number, read_lines, table_rows
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: First line of a frames file.
 HEADER = ",".join(("time", *FAP_COLUMNS))
 #: Phonemes may exceed the motion by this many seconds; more means that the two files do not belong together.

@@ -42,14 +42,12 @@ PathLike = Union[str, os.PathLike[str]]
 RATE = 120.0  #: frames per second of the corpus
 LONGEST_GAP = 0.2  #: seconds that a marker may be missing and is interpolated or held
 MOST_MISSING = 0.2  #: share of an utterance's frames in which any lip or chin marker may be missing
-
 #: Mouth markers from the right corner over the upper lip to the left one and back over the lower lip; the chin.
 MOUTH = ("Mou1", "Mou2", "Mou3", "Mou4", "Mou5", "Mou6", "Mou7", "Mou8", "CH2")
 #: Markers that follow the skull, and how far to trust them: the forehead's move with the brows.
 HEAD = {"MH": 1.0, "LHD": 1.0, "RHD": 1.0, "MNOSE": 1.0, "TNOSE": 1.0, "FH1": 0.1, "FH2": 0.1, "FH3": 0.1}
 #: Nostrils, the upper end of the mouth-nose separation.
 NOSTRILS = ("LNSTRL", "RNSTRL")
-
 #: Channel -> marker, axis, sign, face unit. Positive: jaw and top lip down, bottom lip and corners up, lips forward,
 #: corners outward.
 _X, _Y, _Z = 0, 1, 2

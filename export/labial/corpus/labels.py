@@ -45,7 +45,6 @@ _LETTER = re.compile(r"[A-Za-z\u0080-\U0010ffff]")
 _BLANKS = " \t\r\n"
 #: Bytes of a label without meaning in which a known part is looked for (LABEL_MAX of lib/names.c).
 _SEARCHED = 32
-
 #: Sets of labels: one set, or "auto", any of them, ARPABET before the IPA before X-SAMPA.
 AUTO = "auto"
 
@@ -143,14 +142,12 @@ def _meanings(names: Mapping[str, Mapping[str, str]], name: str) -> Dict[str, st
 LABEL_SETS: Dict[str, int] = {"arpabet": 0x20, "ipa": 0x40, "xsampa": 0x80}
 
 _FILLERS = "BREATHING BREATH LAUGHTER GARBAGE LIPSMACK SMACK NOISE COUGH NSN SPN SIL INHALE EXHALE".split()
-
 #: Silence and noises, the same in every set.
 _SILENCE = (
     "sil pau PAU brth BRTH sp SP spn SPN nsn NSN ssil SSIL h# H# # epi <sil> <SIL> <s> </s> <eps> _ __ _! "
     + " ".join(f"{plus}{name}{plus}" for name in _FILLERS for plus in ("+", "++"))
     + " [NOISE] [COUGH] [SMACK] [SPEECH] [LAUGHTER] [BREATH]"
 )
-
 #: In addition to ARPABET's spellings: flite's, Sphinx's and TIMIT's.
 _ARPABET = {
     "SIL": _SILENCE, "AH": "ax AX ax-h AX-H +UH+ ++UH++ +UM+ ++UM++", "ER": "axr AXR", "IH": "ix IX", "UW": "ux UX",
@@ -197,10 +194,8 @@ _XSAMPA = {
     "K": "k c q x kx", "G": r"g J\ G G\ R R\ R2 M\ g_<", "NG": r"N\ N", "HH": r"h\ H\ ?\ X\ <\ >\ h ? C X",
     "R": r"r r\ r\`", "Y": r"j\ j", "W": "w W H",
 }  # fmt: skip
-
 #: Labels of speech: set of labels -> phoneme -> labels, blanks between.
 SPEECH_LABELS: Dict[str, Dict[str, str]] = {"arpabet": _ARPABET, "ipa": _IPA, "xsampa": _XSAMPA}
-
 #: Symbols of the AVLaughterCycle annotation: words, IPA, and IPA as Praat's backslash sequences. Vowels go to the
 #: nearest of the four; the voiceless ``ic`` is how that annotation writes a cackle; a snore is friction in the nose.
 LAUGHTER_LABELS = {

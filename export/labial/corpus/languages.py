@@ -23,7 +23,6 @@ from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, apt, missing, pip
 
 _logger = logging.getLogger("labial")
-
 #: Words that are said to be unspeakable, at most.
 _SAID_MOST = 1000
 #: Words of which a sentence for espeak-ng has, at most.

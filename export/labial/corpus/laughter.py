@@ -51,7 +51,6 @@ PERIOD_SHORTEST, PERIOD_LONGEST = 140, 280
 TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
 #: Shortest phoneme, milliseconds: one frame.
 SHORTEST = 20
-
 #: A phoneme's mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
 GESTURES = {
     "silence": (0.16, 0.60, 0.0),
@@ -71,7 +70,6 @@ _JAW = 600.0  # FAP 3 of the widest opening: about 18 mm of an adult's face
 #: The jaw's opening and the smile of the softest laugh, a hum; the loudness from which the lips part freely.
 _HUMMED, _FAINT, _PARTED = 0.06, 0.12, 0.35
 _STEP = 5  # ms between samples of the motion before it is sampled at FPS
-
 #: Kinds of a pulse and their shares: vowel after breath, vowel and silence, cackle, closed lips, glottal stop first.
 PULSES, PULSE_SHARES = ("h", "bare", "cackle", "nasal", "stop"), (0.62, 0.12, 0.10, 0.09, 0.07)
 VOWELS, VOWEL_SHARES = ("a", "e", "o", "ic"), (0.40, 0.34, 0.10, 0.16)
@@ -82,7 +80,6 @@ ONSETS = {"ne": 0.25, "click": 0.15, "grunt": 0.20, "plosive": 0.15}
 #: How often a pause between trains has an inhalation, that inhalation a click before it, and is by the nose; and how
 #: often the pause has a grunt, a silence and a longer rest.
 INHALED, CLICKED, BY_NOSE, GRUNTED, SILENT, RESTED = 0.75, 0.2, 0.75, 0.18, 0.5, 0.15
-
 #: How much softer a pulse is than the one before it, and a train than the one before.
 PULSE_DECAY, TRAIN_DECAY = 0.93, 0.92
 #: How loud air is drawn in after a train, of the train's loudness.

@@ -175,11 +175,9 @@ _SPEECH_CLASSES = {
     "mid": "AH EH",
     "spread": "IY IH EY Y",
 }
-
 #: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
 #: middle loudness, which is what every label without a grade means.
 LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
-
 #: Declared substitutes, closest first. Vowels look for vowels and /p b m/ for each other, so that units stay units.
 _ALIKE = {
     "AA": "AO AY AE AH AW", "AE": "EH AA AY AH", "AH": "EH AA UH ER AE IH", "AO": "OW AA OY UH", "AW": "AA OW AE AO",
@@ -215,11 +213,9 @@ _LAUGHTER_CLASSES = {
 
 _ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(label, '')}"
                    for label in ("SIL", *ARPABET)}  # fmt: skip
-
 #: English speech: 39 ARPABET phonemes and silence.
 SPEECH = _phone_set("speech", _SPEECH_CLASSES, f"{VOWELS} P B M", " ".join(("SIL", *ARPABET)),
                     {**SPEECH_LABELS, "arpabet": _ARPABET_LABELS})
-
 #: The twelve laughter phonemes, whose labels are the same in every set, and the soft and loud grades of six of them.
 LAUGHTER = _phone_set(
     "laughter", _LAUGHTER_CLASSES,
@@ -228,6 +224,5 @@ LAUGHTER = _phone_set(
               *(item for grades in LAUGHTER_GRADES.values() for item in grades)]),
     dict.fromkeys(LABEL_SETS, LAUGHTER_LABELS),
 )  # fmt: skip
-
 #: Phone set of each kind of model.
 PHONE_SETS = {"speech": SPEECH, "laughter": LAUGHTER}

@@ -21,7 +21,6 @@ from labial.errors import DataError
 
 #: No word or phoneme lasts longer, in seconds.
 _LONGEST_ITEM = 3600.0
-
 #: The table as it stands in the file.
 TABLE = json.loads(Path(__file__).with_name("services.json").read_text(encoding="utf-8"))
 #: By the service, the phoneme of each viseme, and of two in a row with a blank between them.

@@ -33,10 +33,8 @@ from labial.files.faps import FAP_COLUMNS
 from labial.files.toml import Table, meant, read_toml
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: The name of the file.
 FILE = "corpus.toml"
-
 #: The largest weight: beyond it the other corpora have no effect.
 LARGEST_WEIGHT = 1000.0
 

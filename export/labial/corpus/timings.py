@@ -26,7 +26,6 @@ from labial.errors import DataError
 from labial.files.grammar import read_text
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Overlaps and gaps up to this many seconds come from rounding and are closed.
 TOLERANCE = 0.001
 #: No timing of an episode is later; beyond it the unit is not seconds (HTK writes units of 100 ns).

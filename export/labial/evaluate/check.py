@@ -34,7 +34,6 @@ from labial.tables.quantise import ExportedModel
 #: Against float64 on the same tables, after rounding to whole FAP units.
 LARGEST = 1.0
 RMS = 0.25
-
 #: Against the float model: root mean square in percent of each channel's range.
 SHARE = 1.0
 #: With fewer frames (20 s) that share is not judged: one phoneme for which the rounded tables find another path exceeds

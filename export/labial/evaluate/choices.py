@@ -40,7 +40,6 @@ from labial.train.workers import Workers
 #: Columns of the tables: title and measure.
 COLUMNS = (("diff", "diff/mean"), ("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"),
            ("closure", "closure/rate"), ("jitter", "jitter"), ("seam", "seam/mean"))
-
 #: A split of a corpus, what kind of sounds it has, and the seed of the first split's training.
 Task = Tuple[List[Utterance], Split, str, int]
 
@@ -156,7 +155,6 @@ COMMON = (
     Choice("units of any length, not cut at 40 frames", {(published, "PIECE_MAX"): 10**6}),
     Choice("whole utterances, not units", whole=True),
 )
-
 #: By kind of corpus.
 CHOICES: Dict[str, Tuple[Choice, ...]] = {
     "speech": (*COMMON, Choice("a phoneme's middle, not the apex of its sound", with_apex=False)),

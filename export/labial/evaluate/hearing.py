@@ -109,7 +109,6 @@ VOICES = ("flite:awb", "espeak:en-us+klatt4", "espeak:en-us+f5", "espeak:en-us+J
 PEAK = -6.0
 #: Frames of delay that are looked for: 300 ms, more than any method has.
 LATEST = 15
-
 #: (N,) int16 at 16 kHz -> (T, 13) frames, T of `frames_of(N)`.
 Method = Callable[[np.ndarray], np.ndarray]
 _Phonemes = List[Tuple[str, int]]

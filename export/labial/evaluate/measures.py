@@ -15,17 +15,13 @@ from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
-
 #: In speech they count as firmly closed below this percentile of the human's least openness in the training part's #:
 #: p, b, m.
 FIRM_PERCENTILE = 50.0
-
 #: A closure is searched in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04
-
 #: Seams are searched where units meet; short units are joined until they have so many frames.
 JOINED_FRAMES = 16
-
 #: The viseme classes whose phonemes close the lips, of speech and of laughter; without them there are no closure rates.
 CLOSED_CLASSES = ("bilabial", "nose")
 
@@ -228,12 +224,9 @@ def judged_frames(test: Sequence[Utterance], phone_set: PhoneSet, words: Sequenc
 
 #: Names of the labial parameters of the paper's Table 1.
 PARAMETERS = ("openness", "extension", "top", "bottom")
-
 #: The channels of correlation, amplitude, jitter and seams.
 JUDGED_NAMES = ("open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip")
 JUDGED = tuple(FAP_NAMES.index(name) for name in JUDGED_NAMES)
-
-
 #: The measures of connected speech, which need no common scale of talkers: jaw, lips, a corner, and openness.
 LIPS = ("open_jaw", "lower_t_midlip_o", "raise_b_midlip_o", "stretch_l_cornerlip_o", "openness")
 
@@ -299,10 +292,8 @@ def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
 
 #: A pulse's peak is searched in its phoneme and this many seconds to both sides.
 REACH = 0.04
-
 #: A pulse is visible if it rises further than this percentile of the original's pulses in the training part.
 SEEN_PERCENTILE = 20.0
-
 #: Vowel-like phonemes whose beginnings are further apart than this are of two trains, milliseconds.
 TRAIN_GAP = 400
 

@@ -25,14 +25,11 @@ from labial.see.plot import COLOURS, pyplot, style
 
 #: Column title and measure.
 Columns = Sequence[Tuple[str, str]]
-
 #: The paper's Table 1: diff per labial parameter.
 TABLE_1: Columns = [(name, f"diff/{name}") for name in (*PARAMETERS, "mean")]
-
 #: The first and last of the other measures, for all kinds.
 _FIRST: Columns = (("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"))
 _LAST: Columns = (("jitter", "jitter"), ("seam, mean", "seam/mean"), ("seam, largest", "seam/largest"))
-
 #: The other measures, by kind.
 TABLE_2: Dict[str, Columns] = {
     "speech": [
@@ -55,7 +52,6 @@ TABLE_2: Dict[str, Columns] = {
         *_LAST,
     ],
 }
-
 #: Correlation and amplitude, channel by channel.
 TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}") for what in ("correlation", "amplitude")
                     for name in JUDGED_NAMES]  # fmt: skip
@@ -268,7 +264,6 @@ def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Se
 
 #: Seconds of an utterance that its trajectories are shown for.
 LONGEST = 5
-
 #: Methods whose curves are drawn, if they were run; all of them would hide each other.
 DRAWN = ("hmm_synthesis", "paper", "labial")
 

@@ -19,7 +19,6 @@ from labial.train.codebook import lbg
 
 #: Share of the training part that inner validation fits on; the rest chooses the settings.
 INNER_SHARE = 0.8
-
 #: If unseen words are judged, inner validation holds out words, too, in several folds, since few words are not enough:
 #: in each fold until so many episodes contain one of them. It does not hold out words in more episodes than
 #: COMMON_SHARE, which would leave too little to fit on.

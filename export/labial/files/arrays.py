@@ -20,7 +20,6 @@ from labial.files import limits
 from labial.files.outputs import writing
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Most bytes of an array's header, and most axes.
 _LONGEST_HEADER = 10_000
 _MOST_AXES = 8

@@ -23,7 +23,6 @@ from labial.errors import DataError
 from labial.files import limits
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Bytes that are read at once.
 _PART = 1_000_000
 #: Digits that a whole number has at most: times of a file are far from that.

@@ -27,7 +27,6 @@ except ImportError:  # Windows, where nothing is removed
     fcntl = None  # type: ignore[assignment]
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Names of temporary files and folders: a dot, the target's name, random letters, this suffix.
 SUFFIX = ".part"
 #: Bytes of a target's name in its temporary file's name, which must not become too long.

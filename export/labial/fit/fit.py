@@ -135,8 +135,6 @@ _CORNERS = {"left": ("stretch_l_cornerlip_o", "raise_l_cornerlip_o"),
             "right": ("stretch_r_cornerlip_o", "raise_r_cornerlip_o")}
 #: Coefficients of an output below this share of its largest are omitted.
 _LEAST = 0.002
-
-
 #: Most letters of an output's name, and names that a description refuses, in capitals.
 _LONGEST, _REFUSED = 32, ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE")
 

@@ -27,10 +27,8 @@ POINTS: Tuple[str, ...] = (
     "inner_upper_left", "inner_upper_right", "inner_lower_left", "inner_lower_right",
     "outer_upper_left", "outer_upper_right", "outer_lower_left", "outer_lower_right",
 )  # fmt: skip
-
 #: Required points.
 NEEDED: Tuple[str, ...] = ("nose", "corner_left", "corner_right", "inner_upper", "inner_lower")
-
 #: Columns of a table of lip points in Multi-PIE's numbering, whose 48 is the corner on the viewer's left: the face's
 #: right one.
 _MULTI_PIE: Mapping[str, str] = {
@@ -40,7 +38,6 @@ _MULTI_PIE: Mapping[str, str] = {
     "inner_lower_right": "lip_67", "outer_upper_right": "lip_50", "outer_upper_left": "lip_52",
     "outer_lower_left": "lip_56", "outer_lower_right": "lip_58",
 }  # fmt: skip
-
 #: Millimetres between the nose's base and the inner upper lip of a grown-up, by which heads of unknown units are
 #: scaled: that of ICT-FaceKit's mean head.
 USUAL_MNS = 21.2
@@ -132,10 +129,8 @@ _SIDE = re.compile(r"(?i:left|right|(?<![a-z])[lr](?![a-z]))|(?<=[a-z0-9])[LR](?
                    r"|(?<![A-Za-z])[LR](?=[A-Z][a-z])")
 #: Sides looked at in one name.
 _SIDES = 4
-
 #: A left and a right shape, by name.
 Pair = Tuple[str, str]
-
 #: Cosine between one shape and the other's mirror image, of which shapes that are called a pair are one, and of which
 #: others are; and by how much it must exceed that between the shapes themselves.
 _CALLED, _ALIKE, _BEYOND = 0.5, 0.9, 0.1

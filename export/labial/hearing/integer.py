@@ -43,7 +43,6 @@ FIRST_BIN, LAST_BIN = 2, 121
 BEGIN, _NONE = round(LEVEL_BEGIN * LEVEL_ONE), 64 * LEVEL_ONE
 #: Points of the transform: pairs of samples.
 COUNT = WINDOW // 2
-
 #: The largest difference of samples in silence, the silent frames before a frame that rests, and frames to rest.
 SILENT, SILENT_BEFORE, RESTING = 32, 2, 5
 

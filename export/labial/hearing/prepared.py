@@ -43,7 +43,6 @@ _VERSION = 3
 HELD_OUT = 20
 #: Seconds of silence before and after a clip.
 _PAUSE = (0.05, 0.6)
-
 #: How often frames count for the score of closed lips: others in speech once; those of p, b, m; of n, t, d, f and v,
 #: which are taken for them; of p, b, m next to silence; of silence, where the face rests anyway.
 _PRESSED, _RIVALS, _EDGES, _SILENCE = 4.0, 2.5, 8.0, 0.3

@@ -44,7 +44,6 @@ _END, _PHONEME = 0, 7
 _RATE, _PITCH = 1, 3
 _NORMAL_RATE, _NORMAL_PITCH = 175, 50
 _UTF8 = 1
-
 #: Shorter stretches without a label are word boundaries, glottal stops or glides, for which espeak-ng has no IPA: they
 #: belong to the phoneme before. Milliseconds; pauses last 150.
 SHORTEST_PAUSE = 65

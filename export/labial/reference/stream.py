@@ -21,7 +21,6 @@ from labial.tables.fixed import SEARCHED
 
 #: Frames that are computed at once, some 10 KB each.
 PART = 3000
-
 #: Percent by which the articulation changes from frame to frame, at most.
 SLEW = 10
 

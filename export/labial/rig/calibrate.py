@@ -13,7 +13,6 @@ from labial.rig.description import CURVE_POINTS, PULSE_MAX, PULSE_MIN, Rig
 
 #: Most outputs: the sketch selects them by a digit.
 OUTPUTS_MAX = 10
-
 #: Prints a pulse in degrees, rounded to hundredths.
 _PRINT_DEGREES = """\
     const double place = (pulse - {start!r}) / {each!r};

@@ -27,7 +27,6 @@ APART = 136  # the opening at which lips no longer touch at all
 WEIGHT_MAX, WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 32767, 65535, 268435455, 16777215
 SLOPE_MAX, SEGMENTS, VISEME_MAX = 1 << 25, 8, 32767
 _SLOPE_ONE = 1 << 20
-
 #: FAPs up to which a table is within one unit of the description; faces stay well below.
 FAP_MAX = 1000.0
 #: Most units by which weights and gain may miss the description; factors tried where no power of two comes so near.

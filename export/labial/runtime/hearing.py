@@ -41,7 +41,6 @@ _LAST = 64
 _LEVEL_MIN, _LOOKS = 3328, 100
 #: Samples that are heard in one call of C.
 _PIECE = 1 << 16
-
 #: A block of sound: bytes of int16, low byte first; or an object with a buffer of int16, such as array("h") or a numpy
 #: array, of shape (N,) or (N, channels).
 Sound = Union[bytes, bytearray, memoryview, "array[int]", Any]

@@ -31,7 +31,6 @@ class HasFaps(Protocol):
 
 #: A frame of a stream or of hearing, or its 13 FAPs.
 Faps = Union[HasFaps, Iterable[int]]
-
 #: Value of each output by name: an int, or a float where the unit is weight.
 Values = Dict[str, Union[int, float]]
 

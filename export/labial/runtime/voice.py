@@ -59,7 +59,6 @@ _SPOKEN = 10_000
 #: Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t).
 _KINDS = {"phonemes": 0, "azure": 1, "polly": 2, "words": 3, "characters": 4}
 _ABSOLUTE, _CHAINED, _JOINED = range(3)
-
 #: Text, beginning and end of an item in seconds; the end is None where it is not known.
 _Item = Tuple[Union[str, int], float, Optional[float]]
 

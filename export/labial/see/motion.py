@@ -20,7 +20,6 @@ from labial.files.grammar import fields_of, is_blank, is_number, is_whole, read_
 from labial.tables.bundled import is_model
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Kinds of bands: visible features of a phoneme.
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.

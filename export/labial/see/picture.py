@@ -16,10 +16,8 @@ from labial.runtime.render import render
 
 #: A caption, phonemes with milliseconds, mostly of a word, and the place of the one that is drawn; a laugh has none.
 Sound = Tuple[str, Tuple[Tuple[str, int], ...], int]
-
 #: What makes frames (T, 13), FAP, 50 a second, of phonemes with milliseconds.
 Speak = Callable[[List[Tuple[str, int]]], np.ndarray]
-
 #: The drawn phonemes.
 _SAID: Tuple[Sound, ...] = (
     ("rest", (("SIL", 200),), 0),

@@ -15,12 +15,10 @@ from labial.files import limits
 from labial.files.faps import FAP_COLUMNS
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: The template of the player and its drawing, shared with the C demo; motion and drawing replace the words below.
 PLAYER = Path(__file__).with_name("player.html")
 MOUTH = Path(__file__).with_name("mouth.js")
 DATA_PLACE, MOUTH_PLACE = "@LABIAL_DATA@", "@LABIAL_MOUTH@"
-
 #: First bytes of sounds that browsers play, their place, and the media type.
 _SOUNDS = (
     (0, rb"RIFF....WAVE", "audio/wav"),

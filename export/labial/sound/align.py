@@ -35,7 +35,6 @@ _WORD = re.compile(r"[^\W_]+(?:['\u2019][^\W_]+)*['\u2019]?")
 _LETTERS = re.compile(r"[a-z']+")
 #: Letters of other alphabets' Latin, as English spells them.
 _PLAIN = str.maketrans({"\u2019": "'", "æ": "ae", "œ": "oe", "ø": "o", "ß": "ss", "ð": "th", "þ": "th", "ł": "l"})
-
 #: Letter to sound: for each beginning of the rest of a word, longest first, what it sounds like. In capitals: phonemes.
 _RULES: Dict[str, str] = {
     "tion": "SH AH N", "sion": "ZH AH N", "ssion": "SH AH N", "cious": "SH AH S", "tious": "SH AH S", "ture": "CH ER",
@@ -57,7 +56,6 @@ _ENDINGS: Dict[str, str] = {
 }  # fmt: skip
 #: A vowel, one consonant and an e at the end: the vowel is that of its letter's name.
 _LONG = {"a": "EY", "e": "IY", "i": "AY", "o": "OW", "u": "UW", "y": "AY"}
-
 #: The end of a phrase, and its most words.
 _MARK = re.compile(r"[.,;:!?\n]")
 _LONGEST = 5
@@ -151,7 +149,6 @@ def _without_accents(word: str) -> str:
 
 PathLike = Union[str, os.PathLike[str]]
 Progress = Callable[[float, float], None]
-
 #: Most seconds that are searched at once, and the end of such a piece that is searched again with the next.
 LONGEST_PIECE, OVERLAP = 30.0, 6.0
 #: Words per second: an upper bound of speech.

@@ -10,10 +10,8 @@ from labial import BUNDLED
 from labial.errors import LabialError, did_you_mean
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: The bundled models by kind.
 BY_KIND = dict(zip(("speech", "laughter"), BUNDLED))
-
 #: Help of an argument that takes a model.
 MODEL_HELP = f"a model's file (.npz), or the name of one that Labial comes with: {', '.join(BUNDLED)}"
 

@@ -35,13 +35,10 @@ from labial.tables.phones import phone_set
 
 #: Version of the format.
 FORMAT = 7
-
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
-
 #: Steps after which a chain's state frequencies count as stationary.
 STATIONARY_STEPS = 2000
-
 #: Least standard deviation of a phoneme's duration, seconds, so that the gain fits its 16 bits.
 _DURATION_DEVIATION_MIN = 0.003
 

@@ -17,29 +17,22 @@ from scipy.spatial import cKDTree
 
 #: A split moves the two halves by this share of the cell's standard deviation, along its widest feature.
 SPLIT = 0.5
-
 #: Lloyd's iteration ends when the distortion falls by less than this share, or after MAXIMUM_ITERATIONS. Before the
 #: last split a rougher solution does as well.
 TOLERANCE = 1e-4
 ROUGH_TOLERANCE = 1e-2
 MAXIMUM_ITERATIONS = 60
-
 #: A relative bound far above the rounding error of a distance.
 _ROUNDING = 1e-9
-
 #: Points whose distances to all centres are computed at once.
 _BLOCK = 1024
-
 #: Centres near a point's own that are tracked separately; all others count as far as the next one.
 _NEAR = 4
-
 #: Least variance of a state, as a share of the feature's variance over the corpus.
 VARIANCE_FLOOR = 1e-3
-
 #: Transitions and starts that were never counted have probability 0, except those that keep every state reachable: to
 #: itself and to its neighbours in static mean, which get this count in addition.
 NEIGHBOUR_COUNT = 0.5
-
 #: Added to the starts of every state, in proportion to the state's frequency.
 INITIAL_COUNT = 5.0
 

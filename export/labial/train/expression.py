@@ -30,26 +30,19 @@ from labial.train.workers import Workers
 
 #: Viseme classes that make contact, and their FAPs: those that lower the upper lip, and those that raise the lower lip.
 CONTACTS = {"bilabial": (51, 52, 55, 56, 57, 58), "labiodental": (52, 57, 58)}
-
 #: The same of laughter, where air goes through the nose. These lips rest on each other without pressure: they have no
 #: floor, but follow their target alone, so that the memory of the states does not open them.
 HELD = {"nose": (51, 52, 55, 56, 57, 58)}
-
 #: Seconds around the segment in which contact is searched, the usual error of alignments.
 MARGIN = 0.04
-
 #: The percentile of all human frames that is the lowest target of any phoneme.
 LEAST = 1.0
-
 #: FAPs that come to rest in a pause, where a phone set makes contacts: all but protrusion.
 RESTING = (3, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60)
-
 #: The rest position comes from frames of pauses at least this far from speech, seconds.
 AWAY = 0.2
-
 #: The weight of a frame in contact: times the median over a channel's states.
 FIRMNESS = 2.0
-
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor. Lips press in p, b, m, as in
 #: the firmer half of people's; for the teeth in f, v all count but the tenth with the largest error of timing.
 FIRMEST = {"bilabial": 0.5, "labiodental": 0.9}
@@ -122,23 +115,17 @@ def _rest(material: Sequence[Recording], silence: int, away: int, least: np.ndar
 #: another.
 AMPLITUDE = 0.84
 CORNERS_AMPLITUDE = 0.86
-
 #: The same where talkers are random effects: the mean over talkers, each in his own units and on his own phonemes.
 SHARED = 1.0
-
 #: So many frames tell half of what a talker's recordings can tell of the scale that talkers share.
 HALF = 500.0
-
 #: Episodes of a talker for measuring it, and the range of gains where talkers are random effects.
 OF_TALKER = 25
 SHARED_GAINS = (0.25, 6.0)
-
 #: Episodes for measuring it.
 EPISODES = 160
-
 #: The percentiles that the middle of a channel's range lies between.
 RANGE = (5.0, 95.0)
-
 #: Largest gain; the least is 1.
 LARGEST_GAIN = 3.0
 
@@ -235,10 +222,8 @@ def motion_of(task: Tuple[Model, Recording]) -> np.ndarray:
 
 #: Where the table explains less of FAP 17 than this correlation, that stays a channel.
 LEAST_CORRELATION = 0.85
-
 #: The percentiles of the corners' mean that the table spans: beyond there are too few values to tell.
 SPAN = (0.1, 99.9)
-
 #: How far the table is stretched at most.
 STRETCH = (0.5, 2.0)
 

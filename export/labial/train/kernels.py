@@ -49,16 +49,12 @@ from labial.train.recordings import Recording
 #: The taps reach this far to each side and are this far apart, in seconds.
 REACH = 0.36
 SPACING = 0.04
-
 #: Limit of the reach, in frames: the device's LABIAL_REACH.
 REACH_FRAMES = LIMITS["reach"]
-
 #: Frames that the regression reads at once, some 2.5 KB each.
 BLOCK = 65536
-
 #: Least occurrences of a pair with its own correction, regardless of their weights.
 PAIR_COUNT = 20
-
 #: Knots of a pair: one for a constant shape, two for one that changes from the phoneme's start to its end.
 PAIR_KNOTS = 2
 

@@ -27,13 +27,10 @@ from labial.reference.shape import ShapeTables
 
 #: Samples per component: a full covariance of 14 dimensions needs about as many.
 SAMPLES_PER_COMPONENT = 15
-
 #: Least samples of a phoneme's own mixture.
 MINIMUM_SAMPLES = 10
-
 #: Added to the diagonal of every covariance of scaled vectors, whose variances over the corpus are 1.
 REGULARISATION = 0.02
-
 #: The time axis of a training vector.
 DURATION = CHANNELS
 
@@ -136,10 +133,8 @@ WEIGHT_PRIOR = 1.0
 CLASS_PRIOR = 0.1
 COVARIANCE_PRIOR = 3.0
 COVARIANCE_SHRINK = 0.5
-
 #: The least log-probability of a class: the device's tables end at 255 / 32 nats below the best.
 LOG_FLOOR = -7.9
-
 #: EM stops at a gain below this, in nats per sample, or after MAXIMUM_ITERATIONS.
 TOLERANCE = 1e-4
 MAXIMUM_ITERATIONS = 200

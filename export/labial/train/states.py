@@ -26,7 +26,6 @@ from labial.train.codebook import VARIANCE_FLOOR, Codebook, Division, features, 
 #: A state's statistics are joined with those of its codebook cell (means) and of all states (variances), which
 #: count as this many frames.
 PRIOR_FRAMES = 20.0
-
 #: Largest diagonal element of equation 3's matrix over the least of static + anchor, per channel. The device's weights
 #: carry WEIGHT_SUM_MAX / WEIGHT_MIN, a little more.
 DYNAMIC_RANGE = 2000.0
@@ -158,11 +157,9 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
 
 #: Factors of precisions. Static and anchor share the precision from least squares.
 SCALES = Scales(static=1.0, delta=0.1, acceleration=0.1, anchor=1.0)
-
 #: How many times its variance a target is taken to stray: kernels overlap, so that targets of successive steps err
 #: alike and tell less than as many that err by themselves. Chosen, as the number of states, on corpora of other seeds.
 ALIKE = 2.0
-
 #: The least share of a state's hold that its mean or the target has.
 LEAST_SHARE = 0.02
 

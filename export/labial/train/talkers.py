@@ -54,14 +54,11 @@ from labial.train.workers import Workers
 #: How many times stronger the prior of what talkers share is than that of one talker; chosen on talkers left out, where
 #: 1 was the best v.
 SHARED = 3.0
-
 #: The largest v: beyond it talkers share nothing.
 LARGEST_VARIANCE = 1000.0
-
 #: Penalties with talkers, chosen on talkers left out. How one talker's slow phonemes differ from his fast ones, or what
 #: single neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
 PENALTIES = Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
-
 #: Least occurrences of a pair with talkers: with 20 as without, the tables are larger and the motion no closer.
 PAIR_COUNT_SHARED = 25
 

@@ -19,17 +19,14 @@ from labial.errors import DataError
 from labial.files.grammar import lines_of, read_text
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: A letter's number is its place here; 0 stands for "outside the word".
 LETTERS = "\0abcdefghijklmnopqrstuvwxyz'"
 #: Most letters of a word: the length of the decoder's memory (LABIAL_WORDS_LETTERS of labial/words.h).
 LONGEST = 32
 #: Phonemes by number: silence, then the 39 of ARPABET in the order of the alphabet, as in the bundled model.
 PHONEMES: Tuple[str, ...] = ("SIL", *ARPABET)
-
 #: The list of common words that comes with this package.
 COMMON = Path(__file__).with_name("common.txt")
-
 #: Most phonemes of a word: two for each letter.
 _PHONEMES_MOST = 2 * LONGEST
 _WORD = re.compile(r"[a-z']+")

@@ -23,7 +23,6 @@ from labial.words.dictionary import LETTERS, LONGEST, PHONEMES, letters_of
 from labial.words.trees import LABELS_MOST, QUESTIONS, answer, features
 
 PathLike = Union[str, os.PathLike[str]]
-
 #: Version of the file's layout.
 FORMAT = 1
 #: Questions on the way to a leaf, at most.

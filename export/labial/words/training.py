@@ -17,7 +17,6 @@ from labial.words.trees import FIRST, LABELS_MOST, OTHER, Asked, Samples, featur
 
 #: Leaves of all trees, and exceptions, of the bundled tables.
 LEAVES, EXCEPTIONS = 13_000, 1_000
-
 #: What whoever passes the tables on must say; :data:`labial.words.dictionary.NOTICE` has the whole notice.
 ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-2015 Carnegie Mellon University. All "
                "rights reserved.")

@@ -24,14 +24,11 @@ from labial.files.faps import CHANNELS
 
 #: Segments to each side of a frame's own that have an effect.
 NEIGHBOURS = 4
-
 #: Exponents p, and priors in frames, that are tried.
 EXPONENTS = (1.0, 1.5)
 PRIORS = (3.0, 30.0)
-
 #: Dominance falls to 1/e at this distance, in seconds, before it is fitted; |t - c| is measured in it.
 DISTANCE = 0.1
-
 #: The choice of settings fits on so many utterances, and only the channels of the labial parameters.
 TUNING_UTTERANCES = 160
 TUNING_CHANNELS = (1, 2, 3, 4, 5, 6)

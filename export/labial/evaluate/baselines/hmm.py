@@ -30,10 +30,8 @@ from labial.reference.tables import Equation
 #: States per phoneme, and frames that a level's parent counts for, that are tried.
 STATES = (3, 5)
 STRENGTHS = (0.5, 2.0, 6.0, 20.0)
-
 #: Rounds of re-alignment.
 ALIGNMENTS = 3
-
 #: Least variance of a state, as a share of the feature's variance over the training part.
 VARIANCE_FLOOR = 1e-3
 

@@ -182,7 +182,6 @@ def fit_regression(training: Training) -> Linear:
 #: The window reaches this far to both sides; labels are read every frame, the step stream every SPACING. Seconds.
 REACH = 0.3
 SPACING = 0.04
-
 #: Penalties that are tried: of labels, and of the stream divided by its standard deviations; frames.
 LABEL_PENALTIES = (10.0, 30.0, 100.0, 300.0, 1000.0)
 STREAM_PENALTIES = (30.0, 300.0, 3000.0)
