@@ -17,7 +17,7 @@ import warnings
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -27,10 +27,9 @@ from labial.corpus.iemocap import read_iemocap
 from labial.corpus.phonesets import LAUGHTER, PHONE_SETS, PhoneSet
 from labial.corpus.talkers import brought_together, with_something_left, with_sources
 from labial.corpus.timings import SourceSegment, phoneme_segments, read_segments
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files.frames import sampled
 
-PathLike = Union[str, os.PathLike[str]]
 #: Names of the corpus's files: subject, begin and end in milliseconds.
 NAME = re.compile(r"\d+_\d+_\d+")
 #: Label of an interval of tier 2 that holds speech.
@@ -116,7 +115,7 @@ class Resampled(NamedTuple):
     apex: np.ndarray  #: (S,) int64: a segment's frame at its apex, else middle; the nearest frame if it has none
 
 
-def read_corpus(path: Union[str, os.PathLike[str]], kind: str = "speech") -> List[Episode]:
+def read_corpus(path: PathLike, kind: str = "speech") -> List[Episode]:
     """Reads a corpus, whichever kind of files it has; episodes are sorted by name, labels are phonemes of `kind`.
 
     Recognised: IEMOCAP by its folders ``Session*/sentences``, AVLaughterCycle (laughter only) by its file names,
@@ -147,11 +146,11 @@ def read_corpus(path: Union[str, os.PathLike[str]], kind: str = "speech") -> Lis
     return with_sources(path, episodes)
 
 
-def read_each(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech") -> List[List[Episode]]:
+def read_each(paths: Sequence[PathLike], kind: str = "speech") -> List[List[Episode]]:
     """Reads several corpora as :func:`read_corpus` does. Folders of one name whose ``corpus.toml`` does not say who
     speaks are different talkers. Raises DataError for a folder that is named twice, and for a corpus in which nobody
     speaks or nothing moves."""
-    folders: Dict[Path, Union[str, os.PathLike[str]]] = {}
+    folders: Dict[Path, PathLike] = {}
     for path in paths:
         where = Path(path).resolve()
         if where in folders:
@@ -173,7 +172,7 @@ def read_each(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech
     return corpora
 
 
-def read_corpora(paths: Sequence[Union[str, os.PathLike[str]]], kind: str = "speech", *, even_sides: bool = False,
+def read_corpora(paths: Sequence[PathLike], kind: str = "speech", *, even_sides: bool = False,
                  distinct: bool = False) -> List[List[Episode]]:
     """Reads several corpora as :func:`read_each` does, and brings every recording's mean and scale, channel by channel,
     to those of the first; with `even_sides` those of the mean of both sides of the mouth. Includes what every corpus

@@ -26,17 +26,9 @@ from labial.corpus import services
 from labial.corpus.entries import Parsed, read_entries
 from labial.corpus.phonesets import AUTO, VOWELS
 from labial.corpus.services import KINDS, SERVICES, TABLE, VISEMES, Odd, Timed, Told
-from labial.corpus.timings import (
-    PathLike,
-    SourceSegment,
-    checked,
-    lab_of,
-    phone_set_of,
-    phoneme_segments,
-    read_segments,
-)
+from labial.corpus.timings import SourceSegment, checked, lab_of, phone_set_of, phoneme_segments, read_segments
 from labial.corpus.words import PLAIN, Pronunciation, Word, timings_of, words_of_characters
-from labial.errors import DataError, StreamError
+from labial.errors import DataError, PathLike, StreamError
 from labial.files.grammar import Content, read_bytes, read_text
 from labial.files.limits import LABEL
 

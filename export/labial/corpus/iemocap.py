@@ -20,11 +20,10 @@ In a dialog ``Ses01F_...`` only speaker F has markers: utterances ``..._M...`` s
 from __future__ import annotations
 
 import math
-import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple, Union
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -33,11 +32,9 @@ from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import LARGEST, check_span
 from labial.corpus.phonesets import SPEECH, PhoneSet
 from labial.corpus.timings import phoneme_segments, read_segments
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.faps import CHANNELS
 from labial.files.grammar import fields_of, number_or_nan, read_lines
-
-PathLike = Union[str, os.PathLike[str]]
 
 RATE = 120.0  #: frames per second of the corpus
 LONGEST_GAP = 0.2  #: seconds that a marker may be missing and is interpolated or held

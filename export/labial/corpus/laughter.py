@@ -23,16 +23,15 @@ The bottom lip follows the jaw, the top lip rises a little with the smile, and b
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
-from typing import List, Tuple, Union
+from typing import List, Tuple
 
 import numpy as np
 
 from labial.corpus.folder import HEADER
 from labial.corpus.phonesets import LAUGHTER_GRADES
 from labial.defaults import EPISODES
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.outputs import folder
 
@@ -92,7 +91,7 @@ _UNGRADED = {graded: label for label, grades in LAUGHTER_GRADES.items() for grad
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
 
-def generate(out_dir: Union[str, os.PathLike[str]], episodes: int = EPISODES, seed: int = 0) -> None:
+def generate(out_dir: PathLike, episodes: int = EPISODES, seed: int = 0) -> None:
     """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
 
     Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
@@ -110,7 +109,7 @@ def generate(out_dir: Union[str, os.PathLike[str]], episodes: int = EPISODES, se
         _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
 
-def is_synthetic(path: Union[str, os.PathLike[str]]) -> bool:
+def is_synthetic(path: PathLike) -> bool:
     """Whether the folder's README says that :func:`generate` made it."""
     try:
         with open(Path(path) / "README.md", encoding="utf-8", errors="replace") as readme:

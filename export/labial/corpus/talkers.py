@@ -19,20 +19,19 @@ outside silence. Where a corpus says that a channel's ``scale`` is its own, the 
 
 from __future__ import annotations
 
-import os
 import warnings
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple, Union
+from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus.episode import Episode, Source
+from labial.errors import PathLike
 from labial.files.faps import FAP_COLUMNS
 from labial.files.toml import Table, meant, read_toml
 
-PathLike = Union[str, os.PathLike[str]]
 #: The name of the file.
 FILE = "corpus.toml"
 #: The largest weight: beyond it the other corpora have no effect.

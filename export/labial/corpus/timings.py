@@ -9,23 +9,21 @@ are in the file until :func:`phoneme_segments` maps them to a phone set and fill
 from __future__ import annotations
 
 import math
-import os
 import re
 import warnings
 from dataclasses import dataclass, field
 from io import StringIO
 from itertools import islice
-from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
+from typing import Iterable, List, Optional, Sequence, Set, Tuple
 
 from labial.core import lines
 from labial.core.guard import SHORTEST
 from labial.core.lines import LAUGH
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import AUTO, PHONE_SETS, PhoneSet
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.grammar import read_text
 
-PathLike = Union[str, os.PathLike[str]]
 #: Overlaps and gaps up to this many seconds come from rounding and are closed.
 TOLERANCE = 0.001
 #: No timing of an episode is later; beyond it the unit is not seconds (HTK writes units of 100 ns).

@@ -16,7 +16,7 @@ from typing import Callable, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike
+from labial.errors import PathLike
 from labial.hearing import clips, distort, targets
 from labial.hearing.features import FRAME, RATE, frames_of
 from labial.hearing.integer import delivered

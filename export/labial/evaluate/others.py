@@ -23,8 +23,7 @@ import numpy as np
 import soxr
 
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike
-from labial.errors import LabialError, apt, missing, needs
+from labial.errors import LabialError, PathLike, apt, missing, needs
 from labial.files.faps import CHANNELS
 from labial.hearing.features import RATE, frames_of
 from labial.hearing.targets import FRAME_MS, closure, durations, frames

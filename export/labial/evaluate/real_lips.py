@@ -20,8 +20,7 @@ import numpy as np
 from labial.corpus.corpora import read_corpus
 from labial.corpus.episode import Episode
 from labial.corpus.formats import SOUNDS
-from labial.corpus.timings import PathLike
-from labial.errors import DataError, needs
+from labial.errors import DataError, PathLike, needs
 from labial.evaluate.hearing import loudness_of
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.faps import FAP_NUMBERS

@@ -17,12 +17,11 @@ import functools
 import math
 import os
 import re
-from typing import Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Iterator, List, Optional, Sequence, Tuple
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 
-PathLike = Union[str, os.PathLike[str]]
 #: Bytes that are read at once.
 _PART = 1_000_000
 #: Digits that a whole number has at most: times of a file are far from that.

@@ -8,11 +8,9 @@ by kind of file.
 from __future__ import annotations
 
 import os
-from typing import Union
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 
-PathLike = Union[str, os.PathLike[str]]
 #: Most bytes of a text file: timings, frames, tables; of a TOML file; of a binary model for the run-time.
 TEXT = 256_000_000
 TOML = 1_000_000

@@ -17,16 +17,15 @@ import stat
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import IO, Any, Callable, Iterator, List, Optional, Union
+from typing import IO, Any, Callable, Iterator, List, Optional
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 
 try:
     import fcntl
 except ImportError:  # Windows, where nothing is removed
     fcntl = None  # type: ignore[assignment]
 
-PathLike = Union[str, os.PathLike[str]]
 #: Names of temporary files and folders: a dot, the target's name, random letters, this suffix.
 SUFFIX = ".part"
 #: Bytes of a target's name in its temporary file's name, which must not become too long.

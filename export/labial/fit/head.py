@@ -12,11 +12,11 @@ import re
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Dict, Iterator, List, Mapping, Sequence, Set, Tuple, Union
+from typing import Dict, Iterator, List, Mapping, Sequence, Set, Tuple
 
 import numpy as np
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 
 #: Points of a head. Left and right are the head's own; x grows to its left, y upwards, z forwards. `upper` and `lower`
 #: are the middles of the lips, inner ones where the lips meet, outer ones on the red of the lips seen from the front;
@@ -84,7 +84,7 @@ def from_points(where: str, shapes: Sequence[str], rest: Mapping[str, np.ndarray
     return head
 
 
-def read_table(path: Union[str, os.PathLike[str]]) -> Head:
+def read_table(path: PathLike) -> Head:
     """A head from a CSV table, millimetres: a row ``neutral`` and one per shape; columns ``POINT_x``, ``POINT_y``,
     ``POINT_z``, where POINT is one of `POINTS` or a point of Multi-PIE (``lip_48`` .. ``lip_67``, ``chin``,
     ``nose_base``). Raises DataError naming file and line."""

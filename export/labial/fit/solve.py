@@ -24,11 +24,11 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.fit.head import Head, Pair, by_names
 from labial.fit.meaning import fap, rows
 from labial.runtime.render import render
@@ -65,7 +65,7 @@ class Motion:
         return found
 
 
-def read_sentences(path: Union[str, os.PathLike[str]] = SENTENCES, laughs: Sequence[float] = ()) -> Motion:
+def read_sentences(path: PathLike = SENTENCES, laughs: Sequence[float] = ()) -> Motion:
     """The motion of a file of sentences, one a line, with the bundled English model; after them laughs of these
     intensities, two seconds each. Raises DataError naming file and line."""
     parts: List[np.ndarray] = []

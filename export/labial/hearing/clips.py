@@ -22,8 +22,8 @@ from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Sequenc
 from labial.corpus.episode import Segment
 from labial.corpus.formats import SOUNDS, read_timings, suffixes
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike, phoneme_segments
-from labial.errors import DataError, LabialError, needs
+from labial.corpus.timings import phoneme_segments
+from labial.errors import DataError, LabialError, PathLike, needs
 from labial.files.grammar import read_text
 from labial.files.outputs import writing
 

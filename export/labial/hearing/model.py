@@ -14,13 +14,12 @@ from typing import Any, BinaryIO, Dict, List, NamedTuple, Tuple, Union
 
 import numpy as np
 
-from labial.errors import ModelError, expect
+from labial.errors import ModelError, PathLike, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS, SIDES
 from labial.hearing.features import BANDS, HOPS
 
-PathLike = Union[str, os.PathLike[str]]
 #: Version of the .npz layout, and what tells such a file from a model of speech or laughter.
 FORMAT = 2
 KIND = "hearing"

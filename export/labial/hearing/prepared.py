@@ -26,8 +26,7 @@ import numpy as np
 
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike
-from labial.errors import needs
+from labial.errors import PathLike, needs
 from labial.files.faps import CHANNELS
 from labial.files.outputs import writing
 from labial.hearing import targets

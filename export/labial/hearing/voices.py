@@ -33,8 +33,8 @@ from labial.core import espeak
 from labial.corpus.episode import Segment
 from labial.corpus.languages import speakable
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike, lab_of
-from labial.errors import DataError, LabialError, apt, missing, needs
+from labial.corpus.timings import lab_of
+from labial.errors import DataError, LabialError, PathLike, apt, missing, needs
 from labial.files import wav
 from labial.files.grammar import read_text
 from labial.files.outputs import folder

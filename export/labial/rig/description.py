@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files import limits
 from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
 from labial.files.toml import Table, meant, read_toml
@@ -170,7 +170,7 @@ class Rig:
     numbers: Numbers = Numbers()
 
 
-def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
+def read(path: PathLike, name: str) -> Rig:
     """The rig that the file describes, called `name`. Raises DataError naming the file and the line or key."""
     where = os.fspath(path)
     content = read_toml(path)

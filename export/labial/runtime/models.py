@@ -11,7 +11,7 @@ from typing import Any, List, Optional, Tuple, Union
 from labial.core.guard import whole
 from labial.core.library import BLOB_MAGIC, ERROR_NAME, ERROR_PHONEME, OK, checked, failure, library, memory, sentence
 from labial.corpus.labels import LABEL_SETS
-from labial.errors import LabialError, ModelError, StreamError
+from labial.errors import LabialError, ModelError, PathLike, StreamError
 from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
@@ -42,7 +42,7 @@ class Model:
     stride: int
     address: int
 
-    def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
+    def __init__(self, path: PathLike) -> None:
         name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
         if not isinstance(name, str):
             raise TypeError(f"a model is named by a path, not by {type(path).__name__}")

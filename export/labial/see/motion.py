@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -13,13 +13,12 @@ from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.frames import opening
 from labial.files.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
 from labial.tables.bundled import is_model
 
-PathLike = Union[str, os.PathLike[str]]
 #: Kinds of bands: visible features of a phoneme.
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
 #: FAPs that MPEG-4 defines, each with an entry in the mask of a .fap file.

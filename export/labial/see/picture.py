@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from typing import Callable, List, Sequence, Tuple, Union
+from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import needs
+from labial.errors import PathLike, needs
 from labial.fit.fit import output_name
 from labial.fit.landmarks import Found
 from labial.rig.animation import outputs
@@ -54,12 +53,12 @@ def said(sounds: Sequence[Sound] = _SAID, speak: Speak = _rendered) -> Tuple[Lis
     return [caption for caption, _, _ in sounds], np.array(frames, dtype=np.float64)
 
 
-def draw(rig: Rig, found: Found, path: Union[str, os.PathLike[str]]) -> None:
+def draw(rig: Rig, found: Found, path: PathLike) -> None:
     """Writes the picture of :data:`_SAID`, PNG. Raises LabialError without matplotlib."""
     sheet(rig, found, path, *said())
 
 
-def sheet(rig: Rig, found: Found, path: Union[str, os.PathLike[str]], captions: Sequence[str], frames: np.ndarray,
+def sheet(rig: Rig, found: Found, path: PathLike, captions: Sequence[str], frames: np.ndarray,
           columns: int = 5, inches: float = 2.2) -> None:
     """Writes the head in each of the frames (N, 13), FAP, in rows of `columns`, each `inches` wide and with its
     caption: PNG. Raises LabialError without matplotlib."""

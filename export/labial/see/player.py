@@ -8,13 +8,12 @@ import os
 import re
 from html import escape
 from pathlib import Path
-from typing import Any, Dict, Optional, Sequence, Union
+from typing import Any, Dict, Optional, Sequence
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS
 
-PathLike = Union[str, os.PathLike[str]]
 #: The template of the player and its drawing, shared with the C demo; motion and drawing replace the words below.
 PLAYER = Path(__file__).with_name("player.html")
 MOUTH = Path(__file__).with_name("mouth.js")

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NAMES
 from labial.files.outputs import writing
@@ -111,7 +111,7 @@ def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
             for kind, (colour, name) in BANDS.items() if kind in present]
 
 
-def write(figure: Figure, path: Union[str, os.PathLike[str]], dpi: int = 110) -> None:
+def write(figure: Figure, path: PathLike, dpi: int = 110) -> None:
     """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it.
 
     Figures are drawn and written within :func:`style`.
@@ -184,7 +184,7 @@ def _span(motions: Sequence[Motion], bands: Sequence[Band]) -> Tuple[float, floa
     return first, last if last > first else first + 0.04
 
 
-def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.PathLike[str]],
+def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike,
          channels: str = DEFAULT) -> None:
     """Writes the plot of one motion or more to `path` (.png, .svg or .pdf).
 

@@ -7,7 +7,7 @@ import re
 import unicodedata
 import warnings
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from tqdm import tqdm
@@ -15,7 +15,7 @@ from tqdm import tqdm
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import VOWELS
 from labial.corpus.timings import lab_of
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.sound.recogniser import (
     LONGEST_PAUSE_UNHEARD,
     LOW,
@@ -147,7 +147,6 @@ def _without_accents(word: str) -> str:
     return "".join(c for c in unicodedata.normalize("NFKD", word) if not unicodedata.combining(c))
 
 
-PathLike = Union[str, os.PathLike[str]]
 Progress = Callable[[float, float], None]
 #: Most seconds that are searched at once, and the end of such a piece that is searched again with the next.
 LONGEST_PIECE, OVERLAP = 30.0, 6.0

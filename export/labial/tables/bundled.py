@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Union
 
 from labial import BUNDLED
-from labial.errors import LabialError, did_you_mean
+from labial.errors import LabialError, PathLike, did_you_mean
 
-PathLike = Union[str, os.PathLike[str]]
 #: The bundled models by kind.
 BY_KIND = dict(zip(("speech", "laughter"), BUNDLED))
 #: Help of an argument that takes a model.

@@ -7,18 +7,16 @@ more than `LONGEST` letters, are left out: the trees have no letters for them.
 
 from __future__ import annotations
 
-import os
 import re
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple, Union
+from typing import Dict, List, Sequence, Tuple
 
 from labial.corpus.phonesets import ARPABET
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.grammar import lines_of, read_text
 
-PathLike = Union[str, os.PathLike[str]]
 #: A letter's number is its place here; 0 stands for "outside the word".
 LETTERS = "\0abcdefghijklmnopqrstuvwxyz'"
 #: Most letters of a word: the length of the decoder's memory (LABIAL_WORDS_LETTERS of labial/words.h).

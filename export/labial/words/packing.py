@@ -24,9 +24,9 @@ from typing import Iterable, List, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import ModelError
+from labial.errors import ModelError, PathLike
 from labial.files.c import check_name, rows, written_by
-from labial.files.outputs import PathLike, folder
+from labial.files.outputs import folder
 from labial.words.alignment import phonemes_of
 from labial.words.dictionary import LETTERS, LONGEST, NOTICE, PHONEMES, letters_of
 from labial.words.tables import WordTables

@@ -10,11 +10,11 @@ import json
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import ModelError, expect
+from labial.errors import ModelError, PathLike, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.outputs import writing
@@ -22,7 +22,6 @@ from labial.words.alignment import SOUNDS, phonemes_of
 from labial.words.dictionary import LETTERS, LONGEST, PHONEMES, letters_of
 from labial.words.trees import LABELS_MOST, QUESTIONS, answer, features
 
-PathLike = Union[str, os.PathLike[str]]
 #: Version of the file's layout.
 FORMAT = 1
 #: Questions on the way to a leaf, at most.
