@@ -20,12 +20,11 @@ from labial.files.grammar import is_number
 from labial.files.outputs import check_folder, folder
 from labial.rig.description import GESTURES, Output, Rig, make_unit, read
 from labial.rig.table import TableOutput, convert
+from labial.runtime.beside import SPAN_MAX
 from labial.runtime.rig import Rig as Face
 
 #: LABIAL_PLAYER_FORMAT of labial_player.h.
 FORMAT = 2
-#: Largest difference of an output's limits, for which the player's sums stay below 2^31.
-SPAN_MAX = 8_000_000
 #: Most bytes of an array on an AVR, and of its flash that a pointer of 16 bits reaches.
 AVR_LARGEST = 32767
 AVR_FLASH = 65535

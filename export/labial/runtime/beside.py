@@ -20,7 +20,7 @@ FORMAT, RATE = 2, 50
 MOST = 255
 #: How many sessions there are.
 SESSIONS = 65536
-#: Largest difference of an output's limits for which the toy's sums stay below 2^31.
+#: Largest difference of an output's limits for which the sums of a toy or player stay below 2^31.
 SPAN_MAX = 8_000_000
 
 

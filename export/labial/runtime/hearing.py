@@ -21,8 +21,8 @@ from typing import (
     Union,
 )
 
-from labial.core.guard import Guard, alone, duration, number, whole
-from labial.core.library import ARTICULATION_MAX, CANCEL_MAX, ERROR_STATE, checked, library, memory
+from labial.core.guard import Guard, alone, articulation, duration, number, whole
+from labial.core.library import CANCEL_MAX, ERROR_STATE, checked, library, memory
 from labial.errors import LabialError, StreamError, did_you_mean
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.runtime.rig import faps_of
@@ -189,10 +189,7 @@ class Hearing:
         """How far the mouth moves, 0 to 200 percent, as :meth:`labial.Stream.articulation`. Raises LabialError for a
         number out of range."""
         self._open()
-        wanted = number(percent, "an articulation")
-        if not 0.0 <= wanted <= ARTICULATION_MAX:
-            raise LabialError(f"an articulation of {wanted:g} is not within 0 .. {ARTICULATION_MAX}")
-        checked(self._library.ears_articulation(self._address, math.floor(wanted + 0.5)), "articulation")
+        checked(self._library.ears_articulation(self._address, articulation(percent)), "articulation")
 
     def frames(self, blocks: Iterable[Sound]) -> Iterator[Frame]:
         """The frames of all blocks, to their end."""

@@ -7,9 +7,8 @@ import math
 from array import array
 from typing import Any, List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone, duration, number, whole
+from labial.core.guard import Guard, alone, articulation, duration, number, whole
 from labial.core.library import (
-    ARTICULATION_MAX,
     DONE,
     DURATION_MAX,
     ERROR_FRAME_RATE,
@@ -210,10 +209,7 @@ class Stream:
         now on come nearer to it by up to 10 percent each. A cancel or a restart keeps it. Raises LabialError for a
         number out of range."""
         self._open()
-        wanted = number(percent, "an articulation")
-        if not 0.0 <= wanted <= ARTICULATION_MAX:
-            raise LabialError(f"an articulation of {wanted:g} is not within 0 .. {ARTICULATION_MAX}")
-        checked(self._library.mouth_articulation(self._address, math.floor(wanted + 0.5)))
+        checked(self._library.mouth_articulation(self._address, articulation(percent)))
 
     # ---- Output
 

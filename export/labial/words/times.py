@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from typing import List, Sequence
 
+from labial.corpus.phonesets import VOWELS
 from labial.words.dictionary import PHONEMES
 
 VOWEL, VOICELESS = 1, 2
-_VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+_VOWELS = frozenset(VOWELS.split())
 _VOICELESS = frozenset("CH F HH K P S SH T TH".split())
 
 _MEANS = """SIL 100 AA 101 AE 113 AH 45 AO 97 AW 144 AY 141 B 55 CH 125 D 48 DH 46 EH 77 ER 91 EY 126 F 93 G 70 HH 57

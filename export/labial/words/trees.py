@@ -32,6 +32,7 @@ from typing import List, Sequence, Tuple
 
 import numpy as np
 
+from labial.corpus.phonesets import VOWELS
 from labial.errors import ModelError
 from labial.words.alignment import phonemes_of
 from labial.words.dictionary import LETTERS, PHONEMES, letters_of
@@ -49,7 +50,7 @@ _MEMBERS = tuple(frozenset(letters_of(name)) for name in CLASSES)
 _GROUPS_MOST = 7
 _FIRST_CLASS, _LABELS, _RIGHT, _LEFT = 28, 256, 384, 392
 _VOWEL, _PAIR, _SILENT = 60, 61, 62
-_VOWEL_PHONEMES = frozenset(PHONEMES.index(name) for name in "AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+_VOWEL_PHONEMES = frozenset(PHONEMES.index(name) for name in VOWELS.split())
 
 
 def ends_in_vowel(sound: int) -> bool:
