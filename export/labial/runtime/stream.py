@@ -23,7 +23,7 @@ from labial.core.library import (
     memory,
 )
 from labial.errors import LabialError, StreamError
-from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.rig import Rig, Values
 
 #: Numbers in an item: its model's place among the stream's, phoneme, milliseconds.
@@ -105,10 +105,9 @@ class Stream:
 
     def __init__(self, model: Optional[Model] = None, *, laughter: Optional[Model] = None, labels: str = "auto",
                  nearest: bool = False, exact: bool = False) -> None:
-        first = _a_model(bundled("speech_en") if model is None else model)
-        self._laughter = _a_model(bundled("laughter_synthetic") if laughter is None else laughter)
-        if not isinstance(labels, str) or labels not in LABELS:
-            raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
+        first = expected(bundled("speech_en") if model is None else model)
+        self._laughter = expected(bundled("laughter_synthetic") if laughter is None else laughter)
+        set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
         self._guard = Guard()
         self._models: List[Model] = []
@@ -172,7 +171,7 @@ class Stream:
         """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames, that of lips
         over fewer to a contact. Raises StreamError if its frame rate or search stride is not the stream's."""
         self._open()
-        self._current = self._place(_a_model(model))
+        self._current = self._place(expected(model))
 
     @alone
     def end(self) -> None:
@@ -375,9 +374,3 @@ class Stream:
         later = sum(self._items[_ITEM * self._used + 2::_ITEM])
         return Latency(core.mouth_held(at) + (later * self.fps + 500) // 1000, core.mouth_milliseconds(at) + later,
                        core.mouth_waiting(at) + self._waiting(), core.mouth_delay(at))
-
-
-def _a_model(model: Any) -> Model:
-    if not isinstance(model, Model):
-        raise TypeError(f"a model is a labial.Model, not {type(model).__name__}")
-    return model

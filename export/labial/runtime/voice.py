@@ -40,7 +40,7 @@ from labial.corpus.words import (
 )
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
-from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.render import Sounds, offset
 from labial.runtime.stream import Frame
 
@@ -89,11 +89,8 @@ class Voice:
     def __init__(self, format: Optional[str] = None, *, model: Optional[Model] = None, labels: str = "auto",
                  nearest: bool = False, own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
                  numbers: bool = False, offset_ms: float = 0.0) -> None:
-        self._model = bundled("speech_en") if model is None else model
-        if not isinstance(self._model, Model):
-            raise TypeError(f"a model is a labial.Model, not {type(model).__name__}")
-        if not isinstance(labels, str) or labels not in LABELS:
-            raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
+        self._model = expected(bundled("speech_en") if model is None else model)
+        set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
         self._guard = Guard()
         self._messages = Messages(format, labels)
