@@ -8,7 +8,7 @@ page says when it was measured.
 from __future__ import annotations
 
 from pathlib import Path
-from statistics import fmean, stdev
+from statistics import fmean
 from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
 from measure import baseline, records
@@ -16,7 +16,7 @@ from measure.boards import BOARDS
 from measure.core import Figure
 from measure.pages import Sentence, count, decimal, row, sentence, share, word
 from measure.sizes import BESIDE
-from measure.sources import Sources, Table, number
+from measure.sources import Sources, Table, Talkers, mean_and_error, number
 
 #: Columns of the boards' tables, and the host's.
 TARGETS = [board.preset for board in BOARDS]
@@ -32,8 +32,6 @@ BLUR, MEAN, DOMINANCE, REGRESSION = ("steps + Gaussian blur", "mean shape", "Coh
                                      "linear regression")
 HMM = "HMM synthesis"
 PARAMETERS = ("openness", "extension", "top", "bottom")
-#: Talkers of RESULTS.md who speak freely; all others say commands.
-FREE = ("a", "b")
 
 
 def of(root: Path, measured: Sequence[Figure] = ()) -> Dict[str, List[Sentence]]:
@@ -41,28 +39,6 @@ def of(root: Path, measured: Sequence[Figure] = ()) -> Dict[str, List[Sentence]]
     `measured` just now."""
     source = Sources(root, baseline.read(root / "bench" / "baseline.json"), measured, records.read(root))
     return {name: list(listed(source)) for name, listed in PAGES.items()}
-
-
-class Talkers:
-    """Correlations of a row of "Talkers left out"."""
-
-    def __init__(self, table: Table, method: str) -> None:
-        heads = list(table[method])
-        self.each = {head: number(table[method][head]) for head in heads[1 : heads.index("mean")]}
-
-    def of(self, free: bool) -> List[float]:
-        """Those of the talkers who speak freely, or of the others."""
-        return [value for talker, value in self.each.items() if (talker in FREE) == free]
-
-    def cells(self) -> List[str]:
-        """Mean of those who speak freely; mean and standard error of the others; of all."""
-        free, others, everyone = self.of(True), self.of(False), list(self.each.values())
-        return [share(fmean(free)), *_mean_and_error(others), *_mean_and_error(everyone)]
-
-
-def _mean_and_error(values: Sequence[float]) -> List[str]:
-    """The mean, and its standard error."""
-    return [share(fmean(values)), share(stdev(values) / len(values) ** 0.5)]
 
 
 def _talkers(source: Sources) -> Dict[str, Talkers]:
@@ -448,9 +424,9 @@ def results(source: Sources) -> Iterator[Sentence]:
     talkers = _talkers(source)["voice"]
     free, others, everyone = talkers.of(True), talkers.of(False), list(talkers.each.values())
     yield sentence("Summary, other people: on {} labels of talkers of whom the training has nothing, the device's "
-                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), *_mean_and_error(everyone))
+                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), *mean_and_error(everyone))
     yield sentence("by {} with {} who speak freely, by {} ± {} with {} labels of other talkers of GRID",
-                   share(fmean(free)), word(len(free)), *_mean_and_error(others), word(len(others)))
+                   share(fmean(free)), word(len(free)), *mean_and_error(others), word(len(others)))
     alone = _talkers(source)["method"]
     yield sentence("Trained on s1 alone it reaches {} ± {}, and the published method {} ± {}",
                    *(figure for one in (alone, _talkers(source)["paper"]) for figure in one.cells()[3:]))

@@ -6,20 +6,9 @@ import ctypes
 import math
 import sys
 from array import array
+from collections.abc import AsyncIterable, AsyncIterator, Iterable, Iterator, Sequence
 from functools import cache
-from typing import (
-    Any,
-    AsyncIterable,
-    AsyncIterator,
-    Iterable,
-    Iterator,
-    List,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-)
+from typing import Any, List, NamedTuple, Optional, Tuple, Union
 
 from labial.core.guard import Guard, alone, articulation, duration, number, whole
 from labial.core.library import CANCEL_MAX, ERROR_STATE, checked, library, memory
