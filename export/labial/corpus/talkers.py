@@ -58,10 +58,8 @@ def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]
     if "talkers" not in table.content:
         return [replace(item, source=common) for item in episodes]
     told = _talkers(table, [item.name for item in episodes])
-    return [
-        replace(item, source=replace(common, talker=told[item.name][0], recording=str(where / told[item.name][1])))
-        for item in episodes
-    ]
+    return [replace(item, source=replace(common, talker=told[item.name][0], recording=str(where / told[item.name][1])))
+            for item in episodes]
 
 
 def _channels(table: Table, key: str) -> FrozenSet[int]:

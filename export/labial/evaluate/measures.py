@@ -146,10 +146,8 @@ class Judge:
 
     def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
         """(2,) share of the phonemes that close the lips where they do, and do so firmly."""
-        least = [
-            least_openness(item, frames, mask, self._phone_set, self._fps)
-            for item, frames, mask in zip(self._test, motion, self._masks)
-        ]
+        least = [least_openness(item, frames, mask, self._phone_set, self._fps)
+                 for item, frames, mask in zip(self._test, motion, self._masks)]
         found = np.concatenate(least) if least else np.zeros(0)
         if not len(found):
             return np.full(2, np.nan)

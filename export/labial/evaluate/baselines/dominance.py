@@ -162,20 +162,14 @@ def _fit(utterances: Sequence[Utterance], training: Training, exponent: float, p
     viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
     speech = [item.timeline.phoneme_at != training.silence for item in utterances]
     parts = [near(item.timeline, training.fps) for item in utterances]
-    around = Near(
-        *(
-            np.concatenate([getattr(part, name)[mask] for part, mask in zip(parts, speech)])
-            for name in ("phoneme", "distance", "present")
-        )
-    )
+    around = Near(*(np.concatenate([getattr(part, name)[mask] for part, mask in zip(parts, speech)])
+                    for name in ("phoneme", "distance", "present")))
     motion = np.concatenate([item.human[mask] for item, mask in zip(utterances, speech)])
     means = _phoneme_means(utterances, len(viseme_class))
     phonemes = len(viseme_class)
     still = Parameters(np.zeros(phonemes), np.zeros(phonemes), np.zeros((int(viseme_class.max()) + 1, 2)))
-    fitted = [
-        fit_channel(around, motion[:, k], means[:, k], viseme_class, exponent, prior) if k in channels else still
-        for k in range(CHANNELS)
-    ]
+    fitted = [fit_channel(around, motion[:, k], means[:, k], viseme_class, exponent, prior) if k in channels else still
+              for k in range(CHANNELS)]
     return Dominance(tuple(fitted), viseme_class, exponent, training.fps)
 
 
