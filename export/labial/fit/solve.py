@@ -107,6 +107,8 @@ def read_sentences(path: PathLike = SENTENCES, laughs: Sequence[float] = ()) -> 
 FEATURES: Tuple[str, ...] = ("jaw", "push_b_lip", "push_t_lip", "upper_lip", "lower_lip", "spread", "corner")
 #: Their spread in speech, FAP units / 1024: coefficients are compared after this.
 _SPREAD = np.array([0.10, 0.06, 0.04, 0.05, 0.13, 0.02, 0.05])
+#: Width of the corner at 0 that is rounded while the rig is optimised.
+_SOFT = 0.004
 
 
 @dataclass(frozen=True)
@@ -298,8 +300,8 @@ class Problem:
             slopes[number, use], offsets[number] = guess[:-1] / scale, min(guess[-1], 0.0)
 
 
-def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray, steps: int,
-             soft: float = 0.004) -> Tuple[np.ndarray, np.ndarray, float]:
+def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray,
+             steps: int) -> Tuple[np.ndarray, np.ndarray, float]:
     """Optimises the rig from here on, with only the `live` (G, F) coefficients."""
     from scipy.optimize import minimize
 
@@ -313,7 +315,7 @@ def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np
 
     def cost(packed: np.ndarray) -> Tuple[float, np.ndarray]:
         a, b = unpack(packed)
-        weights, slope = problem.weights(a, b, soft)
+        weights, slope = problem.weights(a, b, _SOFT)
         total, by_weight = problem.loss(weights)
         by_weight *= slope
         by_a, by_b = np.zeros(live.shape), np.zeros(len(b))

@@ -317,13 +317,12 @@ def _short(line: str) -> str:
 
 
 def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str], minutes: float, seed: int = 0,
-                 told: Optional[Callable[[float], None]] = None, strays: bool = True) -> Written:
+                 told: Optional[Callable[[float], None]] = None) -> Written:
     """Speaks random `sentences` with all of `voices` in turn until there are `minutes` of sound, into the folder
-    `path`, new or empty. With `strays` pace and pitch change every few sentences. `told` receives the seconds so far.
+    `path`, new or empty. Pace and pitch change every few sentences. `told` receives the seconds so far.
 
     The same arguments give the same sounds in a new process, with the same versions of the synthesisers; espeak-ng
-    remembers a little of what it said before. Raises LabialError as
-    :func:`labial.hearing.voices.speak`, and for a folder with files.
+    remembers a little of what it said before. Raises LabialError as :func:`speak`, and for a folder with files.
     """
     with needs("writing sounds", "hear"):
         import soundfile
@@ -334,7 +333,7 @@ def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str]
         raise LabialError("a corpus of speech needs sentences, voices and minutes")
     seconds, sounds = 0.0, 0
     with folder(path) as place:
-        for voice, said in _turns(sentences, voices, seed, strays):
+        for voice, said in _turns(sentences, voices, seed):
             for spoken in said:
                 name = f"{sounds:05d}_{''.join(c if c.isalnum() else '-' for c in voice)}"
                 sound = io.BytesIO()  # so that a full disk is an error of the file, not of the sound's library
@@ -350,14 +349,13 @@ def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str]
     raise AssertionError("the voices never end")
 
 
-def _turns(sentences: Sequence[str], voices: Sequence[str], seed: int,
-           strays: bool) -> Iterator[Tuple[str, Iterator[Spoken]]]:
+def _turns(sentences: Sequence[str], voices: Sequence[str], seed: int) -> Iterator[Tuple[str, Iterator[Spoken]]]:
     """Voices in turn, each with what it says in one go."""
     turn = 0
     while True:
         for voice in voices:
             random = np.random.default_rng([seed, turn, zlib.crc32(voice.encode("utf-8"))])
             texts = [sentences[k] for k in random.integers(len(sentences), size=_RUN)]
-            pace, pitch = (float(high ** random.uniform(-1, 1)) for high in (PACE, PITCH)) if strays else (1.0, 1.0)
+            pace, pitch = (float(high ** random.uniform(-1, 1)) for high in (PACE, PITCH))
             yield voice, speak(voice, texts, pace, pitch)
         turn += 1

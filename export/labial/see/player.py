@@ -41,9 +41,9 @@ def player(title: str, fps: float, frames: Sequence[Sequence[int]], phonemes: Se
     return before + script_data(data, audio) + between + MOUTH.read_text(encoding="utf-8") + after
 
 
-def framed(page: str, height: int = 640) -> str:
+def framed(page: str) -> str:
     """A page within another one, such as a notebook."""
-    return f'<iframe srcdoc="{escape(page)}" style="width: 100%; height: {height}px; border: 0"></iframe>'
+    return f'<iframe srcdoc="{escape(page)}" style="width: 100%; height: 640px; border: 0"></iframe>'
 
 
 def script_data(data: Dict[str, Any], audio: Optional[PathLike]) -> str:

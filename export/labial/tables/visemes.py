@@ -15,8 +15,8 @@ VISEMES: Mapping[str, Tuple[str, ...]] = {
 }  # fmt: skip
 #: The viseme of each phoneme; without /HH/.
 VISEME_OF: Mapping[str, str] = {phoneme: viseme for viseme, members in VISEMES.items() for phoneme in members}
-#: A share of one in the C library, and its mark of a phoneme that has no viseme.
-ONE, NONE = 128, 255
+#: A share of one in the C library.
+ONE = 128
 
 
 class Dominance(NamedTuple):
