@@ -29,7 +29,7 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "export/labial/runtime/beside.py": ("test_beside.py", "test_esp32_beside.py"),
     "export/labial/runtime/voice.py": ("test_voice.py", "test_voice_sessions.py"),
     "export/labial/corpus/services.py": ("test_services.py", "test_messages.py"),
-    "export/labial/corpus/service_files.py": ("test_services.py", "test_timings.py"),
+    "export/labial/corpus/formats.py": ("test_services.py", "test_timings.py"),
     "export/labial/corpus/messages.py": ("test_messages.py", "test_services.py", "test_voice.py"),
     "export/labial/rig/table.py": ("test_rig.py", "test_outputs.py"),
     "export/labial/rig/description.py": ("test_rig.py", "test_outputs.py"),

@@ -18,7 +18,7 @@ import labial
 from labial.__main__ import main
 from labial.commands.common import Limited
 from labial.errors import LabialError
-from labial.fit.sentences import read_sentences
+from labial.fit.solve import read_sentences
 from labial.rig.animation import FORMATS
 from labial.rig.description import read
 from labial.runtime.rig import Rig
