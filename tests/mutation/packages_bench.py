@@ -33,7 +33,7 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "export/labial/corpus/messages.py": ("test_messages.py", "test_services.py", "test_voice.py"),
     "export/labial/rig/table.py": ("test_rig.py", "test_outputs.py"),
     "export/labial/rig/description.py": ("test_rig.py", "test_outputs.py"),
-    "web/hearing/hearing.js": ("hearing.test.mjs", "test_runtime_hearing.py", "test_browser_hearing.py"),
+    "web/hearing/index.js": ("hearing.test.mjs", "test_runtime_hearing.py", "test_browser_hearing.py"),
     "web/hearing/tap.js": ("hearing.test.mjs", "test_browser_hearing.py"),
     "web/labial-face.js": ("mouth.test.mjs", "test_browser_elements.py"),
     "web/track.js": ("streams.test.mjs", "test_npm.py"),
