@@ -143,7 +143,7 @@ int prove_rig(void)
     for (unsigned i = 0; i < OUTPUTS; i++) {
         Frama_C_make_unknown((char *)&outputs[i], offsetof(labial_rig_output_t, curve));
         outputs[i].curve = OR_NULL(const labial_rig_curve_t *, &curve);
-        outputs[i].wanted_visemes = OR_NULL(const int16_t *, wanted_visemes);
+        outputs[i].visemes = OR_NULL(const int16_t *, wanted_visemes);
     }
     FILL(values);
     FILL(changes);
