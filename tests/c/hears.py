@@ -1,6 +1,6 @@
 """Makes anew what test_hear*.c and the device tests hear: a small model of random weights, ``hear_fixture.c`` and
-``hear_fixture.h``, and what the exporter's integers make of sounds, ``hears.h``; and what the exporter's laughs are, ``laughs.h`` for
-test_laugh.c.
+``hear_fixture.h``, and what the exporter's integers make of sounds, ``hears.h``; and what the exporter's laughs are,
+``laughs.h`` for test_laugh.c.
 
     PYTHONPATH=export python3 tests/c/hears.py tests/c
 """
