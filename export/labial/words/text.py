@@ -468,7 +468,8 @@ def _owner(run: str) -> str:
 
 
 def _is_spelt_small(letters: str) -> bool:
-    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three times in a row."""
+    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three
+    times in a row."""
     return letters not in _SOUNDS and bool(_SMALL.match(letters))
 
 
