@@ -26,11 +26,6 @@
 /* FAP units: lips that are no farther apart close in time by themselves. */
 #define CLOSED 24
 
-uint32_t labial_workspace_size(const labial_model_t *model)
-{
-    return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
-}
-
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int status(const labial_t *stream)
 {
@@ -244,7 +239,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 
 int labial_use(labial_t *stream, const labial_model_t *model)
 {
-    unsigned slot, chosen = LABIAL_MODELS;
+    unsigned slot;
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
@@ -259,28 +254,15 @@ int labial_use(labial_t *stream, const labial_model_t *model)
         return LABIAL_ERROR_FRAME_RATE;
     if (model->channel_count > stream->channels.width)
         return LABIAL_ERROR_WORKSPACE;
-    for (slot = LABIAL_MODELS; slot-- > 0;) {
-        if (stream->models[slot] == model) {
-            chosen = slot;
-            break;
-        }
-        if (!is_used(stream, slot))
-            chosen = slot;
-    }
-    if (chosen == LABIAL_MODELS)
-        return LABIAL_ERROR_MODELS;
-    stream->models[chosen] = model;
-    stream->slot = (uint8_t)chosen;
+    for (slot = 0; slot < LABIAL_MODELS && stream->models[slot] != model; slot++)
+        ;
+    if (slot == LABIAL_MODELS) /* the first one that is free */
+        for (slot = 0; is_used(stream, slot);)
+            if (++slot == LABIAL_MODELS)
+                return LABIAL_ERROR_MODELS;
+    stream->models[slot] = model;
+    stream->slot = (uint8_t)slot;
     return LABIAL_OK;
-}
-
-int labial_uses(const labial_t *stream, const labial_model_t *model)
-{
-    unsigned slot;
-    for (slot = 0; status(stream) == LABIAL_OK && slot < LABIAL_MODELS; slot++)
-        if (stream->models[slot] == model && (slot == stream->slot || is_used(stream, slot)))
-            return 1;
-    return 0;
 }
 
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
@@ -387,25 +369,4 @@ int labial_articulation(labial_t *stream, unsigned percent)
     if (result == LABIAL_OK)
         labial_articulation_set(&stream->articulation, percent, stream->channels.entered == 0);
     return result;
-}
-
-/* Frames as milliseconds, rounded. */
-static uint32_t milliseconds_of_frames(uint32_t frames, uint32_t rate)
-{
-    const uint32_t seconds = labial_quotient(frames, rate), rest = frames - seconds * rate;
-    return seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
-}
-
-labial_latency_t labial_latency(const labial_t *stream)
-{
-    labial_latency_t latency = { 0, 0, 0, 0, 0 };
-    if (status(stream) == LABIAL_OK) {
-        const uint32_t rate = stream->models[stream->slot]->frames_per_second;
-        latency.frames = stream->pending;
-        latency.milliseconds = milliseconds_of_frames(latency.frames, rate);
-        latency.phonemes = stream->units.count;
-        latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
-        latency.delay_milliseconds = milliseconds_of_frames(latency.delay, rate);
-    }
-    return latency;
 }

@@ -95,9 +95,9 @@ typedef struct {
 
 /* State of one channel (channels.c). */
 typedef struct {
+    labial_search_t search;
     labial_solver_t solver;
     labial_kept_t kept;
-    labial_search_t search;
 } labial_progress_t;
 
 #if LABIAL_PAPER
@@ -164,6 +164,7 @@ typedef struct {
 
 /* The stream's state (stream.c). Small members come first, where small instructions reach them. */
 typedef struct {
+    const labial_model_t *models[LABIAL_MODELS];
     uint32_t magic;  /* set while the stream is initialised */
     uint8_t slot;    /* model of the next push */
     uint8_t ended;   /* no more phonemes will come */
@@ -172,14 +173,13 @@ typedef struct {
     uint8_t resting; /* the face is at rest or on its way there: motion fades in from it */
     uint8_t held;    /* ticks without a frame since the last frame or push, up to as many as the face is held */
     labial_articulation_t articulation;
+    labial_channels_t channels;
     uint32_t frame;   /* number of the next frame */
     uint32_t pending; /* frames pushed and not yet delivered */
     /* Bit i is that of the frame that was taken i ticks ago; what was taken before a cancel moves beyond the delay before
      * a frame is due. */
     uint32_t begins[LABIAL_DELAY_WORDS_];  /* a solution begins with the frame */
     uint32_t touches[LABIAL_DELAY_WORDS_]; /* a channel is in contact */
-    labial_channels_t channels;
-    const labial_model_t *models[LABIAL_MODELS];
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
     void *user;
     labial_shape_t *shape;   /* of the phoneme that the latest frame belongs to, in the workspace */
