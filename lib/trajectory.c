@@ -40,39 +40,42 @@
 /* A quotient that may be as large as 2^BEND_BITS has so many bits less. */
 #define BEND_BITS 4
 
-/* 2^54 / d for 2^30 <= d < 2^31, to about 24 bits: a table of eight bits and two Newton steps x += x (1 - d x). */
-static uint32_t reciprocal(uint32_t d)
+/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. Cores that do not count leading zeros go
+ * there from `near`, that of the row before. */
+static inline unsigned headroom(uint32_t d, unsigned near)
+{
+#if !LABIAL_NARROW_MULTIPLY && defined(__GNUC__) &&                                                                    \
+    (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
+    (void)near;
+    return (unsigned)__builtin_clz(d) - 1u;
+#else
+    uint32_t top;
+    while ((top = d >> (30u - near)) != 1u) {
+        if (top)
+            near--;
+        else
+            near++;
+    }
+    return near;
+#endif
+}
+
+/* 2^(54 - shift) / d for 2^19 <= d < 2^31, to about 24 bits, and the shift, the headroom of d: a table of eight bits and
+ * two Newton steps x += x (1 - d x). */
+static uint32_t reciprocal(uint32_t d, uint8_t *hint)
 {
     static const uint8_t table[64] = { 254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206,
                                        204, 201, 199, 196, 194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172,
                                        170, 168, 166, 165, 163, 161, 160, 158, 157, 155, 154, 152, 151, 150, 148, 147,
                                        146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133, 132, 131, 130, 129 };
-    const int32_t rough = table[(d >> 24) & 63u];
-    const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
-    const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
+    const unsigned shift = headroom(d, *hint);
+    int32_t rough, x, error;
+    *hint = (uint8_t)shift;
+    d <<= shift;
+    rough = table[(d >> 24) & 63u];
+    x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
+    error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
     return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
-}
-
-/* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. Cores that do not count leading zeros go
- * there from that of the row before, `hint`, which is near. */
-static inline unsigned headroom(uint32_t d, uint8_t *hint)
-{
-#if !LABIAL_NARROW_MULTIPLY && defined(__GNUC__) &&                                                                    \
-    (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
-    (void)hint;
-    return (unsigned)__builtin_clz(d) - 1u;
-#else
-    unsigned shift = *hint;
-    uint32_t top;
-    while ((top = d >> (30u - shift)) != 1u) {
-        if (top)
-            shift--;
-        else
-            shift++;
-        *hint = (uint8_t)shift;
-    }
-    return shift;
-#endif
 }
 
 /* scaled / 2^(6 - shift), which is 2^24 at most. */
@@ -91,8 +94,8 @@ static uint16_t short_part(uint32_t part)
 /* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
 static int32_t filtered(labial_solver_t *solver, int32_t g)
 {
-    const unsigned shift = headroom((uint32_t)g, &solver->shifts[0]);
-    const uint32_t inverse = reciprocal((uint32_t)g << shift);
+    const uint32_t inverse = reciprocal((uint32_t)g, &solver->shifts[0]);
+    const unsigned shift = solver->shifts[0];
     const uint32_t hold = (uint32_t)solver->hold << (shift + 1u); /* below 2^16 */
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
     const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
@@ -113,7 +116,7 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     const int32_t hold = (int32_t)solver->hold << 16;
     const int32_t f = ((int32_t)solver->delta + delta) * 131072 + solver->bent;
     int32_t g = hold + solver->row - solver->k2, q;
-    uint32_t d, inverse, rho, kappa;
+    uint32_t inverse, rho, kappa;
     unsigned shift;
     /* GCOVR_EXCL_BR_START: a guard that nothing known meets. Exactly the sum is never below `hold`; where frames are tied
      * at all it is more by 32 and above, of which rounding takes less than three. */
@@ -122,10 +125,8 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     /* GCOVR_EXCL_BR_STOP */
     q = filtered(solver, g);
 
-    d = (uint32_t)(g + f + c * 65536);
-    shift = headroom(d, &solver->shifts[1]);
-    d <<= shift;
-    inverse = reciprocal(d);
+    inverse = reciprocal((uint32_t)(g + f + c * 65536), &solver->shifts[1]);
+    shift = solver->shifts[1];
     rho = unscaled(labial_part24(g, inverse), shift);
     kappa = unscaled(times(c, inverse), shift);
 
