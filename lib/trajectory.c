@@ -78,21 +78,17 @@ static uint32_t reciprocal(uint32_t d, uint8_t *hint)
     return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
 }
 
-/* scaled / 2^(6 - shift), which is 2^24 at most. */
-static inline uint32_t unscaled(int32_t scaled, unsigned shift)
+/* x / d, 0 .. 1, as a part in Q24, with the inverse of d and its shift; kept in 16 bits, of which the largest stands for
+ * one. */
+static uint32_t keep_part(int32_t x, uint32_t inverse, unsigned shift, uint16_t *kept)
 {
-    return ((uint32_t)scaled << shift) >> 6;
+    const uint32_t part = ((uint32_t)labial_part24(x, inverse) << shift) >> 6, rounded = (part + 128u) >> 8;
+    *kept = (uint16_t)(rounded - (rounded >> 16));
+    return part;
 }
 
-/* 0 .. 2^24 as 16 bits, of which the largest stands for one. */
-static uint16_t short_part(uint32_t part)
-{
-    const uint32_t rounded = (part + 128u) >> 8;
-    return (uint16_t)(rounded - (rounded >> 16));
-}
-
-/* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
-static int32_t filtered(labial_solver_t *solver, int32_t g)
+/* Advances to the position of the pending frame given all before it; `g` is its row sum, eliminated. */
+static void filter(labial_solver_t *solver, int32_t g)
 {
     const uint32_t inverse = reciprocal((uint32_t)g, &solver->shifts[0]);
     const unsigned shift = solver->shifts[0];
@@ -100,14 +96,9 @@ static int32_t filtered(labial_solver_t *solver, int32_t g)
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
     const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
     const int32_t pull = shift < 7u ? solver->pull >> (7u - shift) : solver->pull * (1 << (shift - 7u));
-    return q +
-           2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
-}
-
-/* c * part in Q16, for c below 2^14 and part up to 2^24. */
-static inline int32_t times(int32_t c, uint32_t part)
-{
-    return c * (int32_t)(part >> 8) + ((c * (int32_t)(part & 255u)) >> 8);
+    solver->q2 = q;
+    solver->q1 =
+        q + 2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
 }
 
 /* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */
@@ -115,7 +106,8 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
 {
     const int32_t hold = (int32_t)solver->hold << 16;
     const int32_t f = ((int32_t)solver->delta + delta) * 131072 + solver->bent;
-    int32_t g = hold + solver->row - solver->k2, q;
+    int32_t g = hold + solver->row - solver->k2;
+    const int32_t second = c * 65536; /* a multiple of 2^16: its products are exact */
     uint32_t inverse, rho, kappa;
     unsigned shift;
     /* GCOVR_EXCL_BR_START: a guard that nothing known meets. Exactly the sum is never below `hold`; where frames are tied
@@ -123,20 +115,14 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     if (g < hold)
         g = hold;
     /* GCOVR_EXCL_BR_STOP */
-    q = filtered(solver, g);
-
-    inverse = reciprocal((uint32_t)(g + f + c * 65536), &solver->shifts[1]);
+    filter(solver, g);
+    factors->q = solver->q1;
+    inverse = reciprocal((uint32_t)(g + f + second), &solver->shifts[1]);
     shift = solver->shifts[1];
-    rho = unscaled(labial_part24(g, inverse), shift);
-    kappa = unscaled(times(c, inverse), shift);
-
-    factors->q = q;
-    factors->rho = short_part(rho);
-    factors->kappa = short_part(kappa);
-    solver->q2 = solver->q1;
-    solver->q1 = q;
+    rho = keep_part(g, inverse, shift, &factors->rho);
+    kappa = keep_part(second, inverse, shift, &factors->kappa);
     solver->k2 = solver->k1;
-    solver->k1 = times(c, rho);
+    solver->k1 = labial_part24(second, rho);
     solver->row = labial_part24(f, rho) + 2 * solver->k1;
     solver->bent = labial_part24(f, kappa) + 2 * solver->k1;
 }
