@@ -124,8 +124,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
         LABIAL_CHECK(labial_clamp(mean, 524288) == mean && labial_clamp(change, 1118208) == change);
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
-        mean = labial_clamp(mean + change, LABIAL_POSITION_MAX);
-        selection->shape[k].knots[0] = selection->shape[k].knots[1] = (int16_t)mean;
+        selection->shape[k].knots[0] = selection->shape[k].knots[1] = labial_position(mean + change);
     }
 }
 
