@@ -67,12 +67,6 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
     fade->step = (uint16_t)(step + 1u);
 }
 
-void labial_fade_stand(labial_fade_t *fade)
-{
-    memcpy(fade->earlier, fade->pose, sizeof fade->earlier);
-    fade->step = 0;
-}
-
 /* A channel in whole FAP units. */
 static int rounded(const labial_fade_t *fade, unsigned channel)
 {

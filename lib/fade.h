@@ -36,9 +36,6 @@ void labial_fade_close(labial_fade_t *fade, unsigned closing);
 /* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral face. */
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
 
-/* The pose that was delivered last stays where it is: no way leads on. */
-void labial_fade_stand(labial_fade_t *fade);
-
 /* What is left of `whole` on the way, in even steps; 0 at its end, and without one. */
 static inline uint32_t labial_fade_left(const labial_fade_t *fade, uint32_t whole)
 {

@@ -351,7 +351,7 @@ int labial_restart(labial_t *stream)
         return LABIAL_ERROR_STATE;
     reset_input(stream);
     if (!stream->resting)
-        labial_fade_stand(&stream->fade);
+        labial_fade_begin(&stream->fade, 1, 0); /* which goes nowhere: the face stays where it is */
     return LABIAL_OK;
 }
 
