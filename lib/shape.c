@@ -172,13 +172,11 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
     return floor ? model->contacts[floor - 1u] : 0u;
 }
 
-/* The floors of a phoneme that makes contact, or of silence in which channels come to rest: only one with floors does. */
+/* The floors of a phoneme, null without any. */
 static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
 {
     const unsigned floor = model->phonemes[phoneme].floor;
-    /*@ assert floor > 0; */
-    LABIAL_CHECK(floor > 0u);
-    return model->floors + (floor - 1u) * model->channel_count;
+    return floor ? model->floors + (floor - 1u) * model->channel_count : NULL;
 }
 
 /* Raises those of the channels to a phoneme's floor that lie below it; or, with `rest`, brings them that share of
@@ -186,12 +184,11 @@ static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
                         int16_t target[LABIAL_CHANNELS], int32_t rest)
 {
-    const unsigned floor = model->phonemes[phoneme].floor, width = model->channel_count;
-    const int16_t *least;
+    const int16_t *const least = floors_of(model, phoneme);
+    const unsigned width = model->channel_count;
     unsigned k;
-    if (floor == 0)
+    if (!least)
         return;
-    least = model->floors + (floor - 1u) * width;
     for (k = 0; k < width; k++, channels >>= 1)
         if (channels & 1u) {
             const int32_t above = least[k] - target[k];
@@ -259,8 +256,7 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
         if (beside != labels[0] && beside != model->silence &&
             (beside != labels[2 * step] || (step > 0 && beside != labels[3]))) {
             const unsigned contacts = contacts_of(model, beside);
-            if (contacts)
-                apply_floor(model, beside, contacts, target, 0);
+            apply_floor(model, beside, contacts, target, 0);
             borrowed |= contacts;
         }
     }

@@ -153,9 +153,9 @@ static int deliver(labial_t *stream)
     if (!labial_channels_due(&stream->channels, stream->models, motion))
         return 0;
     if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride))) {
-        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
-        labial_fade_close(&stream->fade, labial_fade_closing(stream, LABIAL_DELAY(stream->channels.stride),
-                                                             LABIAL_FADE_STEPS, labial_fade_opening(&stream->fade)));
+        const unsigned closing = labial_fade_closing(stream, LABIAL_DELAY(stream->channels.stride), LABIAL_FADE_STEPS,
+                                                     labial_fade_opening(&stream->fade));
+        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, closing, !stream->resting);
     }
     labial_fade_to(&stream->fade, motion);
     stream->pending--;
@@ -170,7 +170,7 @@ static int rest(labial_t *stream)
     if (!stream->resting) {
         if (stream->exact || labial_fade_rests(&stream->fade))
             return 0;
-        labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, 0);
+        labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, LABIAL_EASE_FRAMES, 0);
         stream->resting = 1;
     }
     if (stream->fade.step == 0)
@@ -330,6 +330,7 @@ int labial_tick(labial_t *stream)
 
 int labial_cancel(labial_t *stream, uint32_t milliseconds)
 {
+    unsigned frames;
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
@@ -337,8 +338,8 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
         labial_units_go_back(&stream->units, stream->pending - stream->units.frames);
     reset_input(stream);
     stream->ended = stream->resting = 1;
-    labial_fade_begin(&stream->fade, labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second),
-                      0);
+    frames = labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second);
+    labial_fade_begin(&stream->fade, frames, frames, 0);
     return LABIAL_OK;
 }
 
@@ -351,7 +352,7 @@ int labial_restart(labial_t *stream)
         return LABIAL_ERROR_STATE;
     reset_input(stream);
     if (!stream->resting)
-        labial_fade_begin(&stream->fade, 1, 0); /* which goes nowhere: the face stays where it is */
+        labial_fade_begin(&stream->fade, 1, 1, 0); /* which goes nowhere: the face stays where it is */
     return LABIAL_OK;
 }
 
