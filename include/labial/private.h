@@ -82,9 +82,9 @@ typedef struct {
 
 /* An accepted frame (stream.c). */
 typedef struct {
-    uint32_t contacts;               /* bit k: channel k of the model is in contact */
     int16_t target[LABIAL_CHANNELS]; /* positions of the model's channels */
     uint8_t marks;
+    uint32_t contacts; /* bit k: channel k of the model is in contact */
 } labial_frame_t;
 
 /* The factors that a channel keeps for its next backward pass, the latest last; a structure, so that it is copied
