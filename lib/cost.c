@@ -2,7 +2,6 @@
  * cost.c - what a model and a stream take: work (labial/model.h), memory, time, and the model's bytes (labial/labial.h).
  * It reads what the steps of a stream hold and changes nothing; a program that only plays links none of it.
  */
-#include "channels.h"
 #include "fixed.h"
 #include "locks.h"
 #include "units.h"
@@ -126,8 +125,8 @@ int labial_uses(const labial_t *stream, const labial_model_t *model)
     unsigned slot;
     LABIAL_LOCK(stream);
     for (slot = 0; is_initialised(stream) && slot < LABIAL_MODELS; slot++)
-        uses |= stream->models[slot] == model && (slot == stream->slot || labial_channels_uses(&stream->channels, slot) ||
-                                                  labial_units_uses(&stream->units, slot));
+        uses |= stream->models[slot] == model &&
+                (slot == stream->slot || labial_units_uses(&stream->units, slot, stream->pending));
     LABIAL_UNLOCK(stream);
     return uses;
 }

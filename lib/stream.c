@@ -192,12 +192,6 @@ static int hold_or_rest(labial_t *stream)
 
 /* ---- The calls --------------------------------------------------------------------------------------------------- */
 
-/* Whether frames to be delivered, or phonemes in the queue, are of the model in `slot`. */
-static int is_used(const labial_t *stream, unsigned slot)
-{
-    return labial_channels_uses(&stream->channels, slot) || labial_units_uses(&stream->units, slot);
-}
-
 static void reset_input(labial_t *stream)
 {
     labial_units_reset(&stream->units);
@@ -257,7 +251,7 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     for (slot = 0; slot < LABIAL_MODELS && stream->models[slot] != model; slot++)
         ;
     if (slot == LABIAL_MODELS) /* the first one that is free */
-        for (slot = 0; is_used(stream, slot);)
+        for (slot = 0; labial_units_uses(&stream->units, slot, stream->pending);)
             if (++slot == LABIAL_MODELS)
                 return LABIAL_ERROR_MODELS;
     stream->models[slot] = model;

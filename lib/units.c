@@ -42,17 +42,10 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
         segment->slot = (uint8_t)slot;
         units->count++;
         units->frames += frames;
+        units->pushed += frames;
+        units->until[slot] = units->pushed;
     }
     return frames;
-}
-
-int labial_units_uses(const labial_units_t *units, unsigned slot)
-{
-    unsigned i;
-    for (i = 0; i < units->count; i++)
-        if (labial_units_at(units, i)->slot == slot)
-            return 1;
-    return 0;
 }
 
 unsigned labial_units_ahead(const labial_model_t *model)

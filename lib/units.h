@@ -78,7 +78,10 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
 /* Frames before the next phoneme begins; 0 where the next frame does. */
 uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
-/* Whether phonemes of the model in `slot` are in the queue. */
-int labial_units_uses(const labial_units_t *units, unsigned slot);
+/* Whether one of the latest `pending` frames that were pushed is of the model in `slot`. */
+static inline int labial_units_uses(const labial_units_t *units, unsigned slot, uint32_t pending)
+{
+    return units->pushed - units->until[slot] < pending;
+}
 
 #endif

@@ -29,6 +29,8 @@ typedef struct {
     uint32_t taken;      /* frames of the oldest segment that were accepted */
     uint32_t frames;     /* of all segments, not yet accepted */
     uint32_t unlabelled; /* frames of the last of these that have no label yet */
+    uint32_t pushed;     /* frames in all, modulo 2^32 */
+    uint32_t until[LABIAL_MODELS];        /* of these up to the last one of the model in each slot */
     uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
