@@ -72,7 +72,8 @@ static inline uint32_t enter(labial_search_t *search, const labial_transition_t 
 #endif
     do {
         least = cross(search, transition, i, least);
-        transition++;
+        least = cross(search, transition + 1, i, least);
+        transition += 2;
     } while (transition < end);
     return least;
 }
