@@ -27,11 +27,11 @@ static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 271
 static const uint8_t parted[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
 
 /* Q15 */
-static uint16_t likelihood(uint32_t cost)
+static uint32_t likelihood(uint32_t cost)
 {
     if (cost > 255u)
         return 0;
-    return (uint16_t)(((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15);
+    return ((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15;
 }
 
 /* part / sum in Q12, rounded down; `inverse` is 2^31 / sum, rounded down, with which the product is short of the
@@ -43,7 +43,7 @@ static uint32_t likelihood_share(uint32_t part, uint32_t sum, uint32_t inverse)
 }
 
 /* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
-static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken, uint32_t *costs, int16_t *deviations)
+static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken, uint32_t *costs, int32_t *deviations)
 {
     const labial_phoneme_t *phonemes = model->phonemes, *phoneme = &phonemes[spoken->phoneme];
     const unsigned previous_class = phonemes[spoken->previous].viseme_class;
@@ -63,7 +63,7 @@ static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken
             cost += (context[previous_class] & 15u) * 16u + (context[next_class] & 0xf0u);
         }
         costs[c] = cost;
-        deviations[c] = (int16_t)(distance < 0 ? -reach : reach);
+        deviations[c] = distance < 0 ? -reach : reach;
         if (cost < least) {
             least = cost;
             best = c;
@@ -78,7 +78,7 @@ static void select_components(const labial_model_t *model, const labial_spoken_t
 {
     const unsigned count = model->phonemes[spoken->phoneme].component_count;
     uint32_t parts[LABIAL_PHONEME_COMPONENTS_MAX];     /* costs; then likelihoods, of the mixture */
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
+    int32_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
     const unsigned best = score(model, spoken, parts, deviations);
     const uint32_t least = parts[best];
     uint32_t sum = likelihood(0), rest = ONE, inverse; /* that of the best one, whose share comes last */
@@ -90,15 +90,15 @@ static void select_components(const labial_model_t *model, const labial_spoken_t
     inverse = labial_quotient(0x80000000u, sum);
     for (i = 0; i <= count; i++) {
         const unsigned c = i < count ? i : best;
-        const uint16_t share = (uint16_t)(i < count ? likelihood_share(parts[i], sum, inverse) : rest); /* Q12 */
+        const uint32_t share = i < count ? likelihood_share(parts[i], sum, inverse) : rest; /* Q12 */
         rest -= share;
         if (share > 0) {
             /* The best one's likelihood is counted in the sum alone, and so it comes once. */
             /*@ assert counting < 8; */
             LABIAL_CHECK(counting < LABIAL_PHONEME_COMPONENTS_MAX);
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = share;
-            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
+            selection->shares[counting] = (uint16_t)share;
+            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -232,7 +232,7 @@ static void part(const labial_model_t *model, const uint8_t *label, int16_t targ
     for (fap = 0; fap < LABIAL_CHANNELS; fap++) {
         const unsigned k = model->sources[fap];
         if (parted[fap] && (channels >> k & 1u)) { /* FAP 17, which may have no channel, does not part */
-            const int32_t floor = last[k] < next[k] ? last[k] : next[k];
+            const int32_t one = last[k], other = next[k], floor = one < other ? one : other;
             const int16_t most = labial_position(floor - parted[fap] * 16);
             if (floor > LABIAL_NO_FLOOR && target[k] > most)
                 target[k] = most;
