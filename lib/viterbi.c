@@ -73,7 +73,9 @@ static inline uint32_t enter(labial_search_t *search, const labial_transition_t 
     do {
         least = cross(search, transition, i, least);
         least = cross(search, transition + 1, i, least);
-        transition += 2;
+        least = cross(search, transition + 2, i, least);
+        least = cross(search, transition + 3, i, least);
+        transition += 4;
     } while (transition < end);
     return least;
 }
