@@ -249,11 +249,13 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     if (model->channel_count > stream->channels.width)
         return LABIAL_ERROR_WORKSPACE;
     for (slot = 0; slot < LABIAL_MODELS && stream->models[slot] != model; slot++)
-        ;
-    if (slot == LABIAL_MODELS) /* the first one that is free */
-        for (slot = 0; labial_units_uses(&stream->units, slot, stream->pending);)
-            if (++slot == LABIAL_MODELS)
-                return LABIAL_ERROR_MODELS;
+        continue;
+    if (slot == LABIAL_MODELS) { /* none yet: the first place whose model is no longer used */
+        for (slot = 0; slot < LABIAL_MODELS && labial_units_uses(&stream->units, slot, stream->pending); slot++)
+            continue;
+        if (slot == LABIAL_MODELS)
+            return LABIAL_ERROR_MODELS;
+    }
     stream->models[slot] = model;
     stream->slot = (uint8_t)slot;
     return LABIAL_OK;

@@ -41,40 +41,39 @@
 #define BEND_BITS 4
 
 /* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. Cores that do not count leading zeros go
- * there from `near`, that of the row before. */
-static inline unsigned headroom(uint32_t d, unsigned near)
+ * there from the shift of the row before, which is near. */
+static inline unsigned headroom(uint32_t d, unsigned shift)
 {
 #if !LABIAL_NARROW_MULTIPLY && defined(__GNUC__) &&                                                                    \
     (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
-    (void)near;
+    (void)shift;
     return (unsigned)__builtin_clz(d) - 1u;
 #else
     uint32_t top;
-    while ((top = d >> (30u - near)) != 1u) {
+    while ((top = d >> (30u - shift)) != 1u) {
         if (top)
-            near--;
+            shift--;
         else
-            near++;
+            shift++;
     }
-    return near;
+    return shift;
 #endif
 }
 
-/* 2^(54 - shift) / d for 2^19 <= d < 2^31, to about 24 bits, and the shift, the headroom of d: a table of eight bits and
+/* 2^(54 - shift) / d for 2^19 <= d < 2^31, to about 24 bits; `*shift` becomes the headroom of d. A table of eight bits and
  * two Newton steps x += x (1 - d x). */
-static uint32_t reciprocal(uint32_t d, uint8_t *hint)
+static uint32_t reciprocal(uint32_t d, uint8_t *shift)
 {
     static const uint8_t table[64] = { 254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206,
                                        204, 201, 199, 196, 194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172,
                                        170, 168, 166, 165, 163, 161, 160, 158, 157, 155, 154, 152, 151, 150, 148, 147,
                                        146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133, 132, 131, 130, 129 };
-    const unsigned shift = headroom(d, *hint);
-    int32_t rough, x, error;
-    *hint = (uint8_t)shift;
-    d <<= shift;
-    rough = table[(d >> 24) & 63u];
-    x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
-    error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
+    const unsigned left = headroom(d, *shift);
+    const uint32_t scaled = d << left;
+    const int32_t rough = table[(scaled >> 24) & 63u];
+    const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(scaled >> 15) * rough * 2)) >> 16);
+    const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)scaled, (uint32_t)x);
+    *shift = (uint8_t)left;
     return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
 }
 
@@ -106,8 +105,8 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
 {
     const int32_t hold = (int32_t)solver->hold << 16;
     const int32_t f = ((int32_t)solver->delta + delta) * 131072 + solver->bent;
+    const int32_t second = c * 65536; /* its products with parts are exact */
     int32_t g = hold + solver->row - solver->k2;
-    const int32_t second = c * 65536; /* a multiple of 2^16: its products are exact */
     uint32_t inverse, rho, kappa;
     unsigned shift;
     /* GCOVR_EXCL_BR_START: a guard that nothing known meets. Exactly the sum is never below `hold`; where frames are tied

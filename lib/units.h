@@ -45,8 +45,8 @@ enum {
     LABIAL_PHONEME_BEGINS = 8 /* the first frame of a phoneme; set with LABIAL_PAPER alone */
 };
 
-/* The i-th segment of the queue, the oldest being 0. It and the next one are not static, or compilers would copy them to
- * all places where they are called. */
+/* The i-th segment of the queue, the oldest being 0. Not static, like the next one, or compilers would copy it to
+ * every place that calls it. */
 const labial_segment_t *labial_units_at(const labial_units_t *units, unsigned i);
 
 /* A model's look-ahead in frames, for its kernels and for short contacts. */

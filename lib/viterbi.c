@@ -123,8 +123,8 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     best = (unsigned)(least - costs);
     search->path[0] = (uint8_t)(first + best);
     trace(search, best, (int)(marks & LABIAL_UNIT_ENDS));
-    cost = costs;
-    if (marks & LABIAL_UNIT_ENDS) { /* the next step sees the best state alone */
+    cost = costs; /* of the states that the next step sees: after a unit the best one alone */
+    if (marks & LABIAL_UNIT_ENDS) {
         first += best;
         size = 1;
         best = 0;
