@@ -90,15 +90,15 @@ static void select_components(const labial_model_t *model, const labial_spoken_t
     inverse = labial_quotient(0x80000000u, sum);
     for (i = 0; i <= count; i++) {
         const unsigned c = i < count ? i : best;
-        const uint32_t share = i < count ? likelihood_share(parts[i], sum, inverse) : rest; /* Q12 */
+        const uint16_t share = (uint16_t)(i < count ? likelihood_share(parts[i], sum, inverse) : rest); /* Q12 */
         rest -= share;
         if (share > 0) {
             /* The best one's likelihood is counted in the sum alone, and so it comes once. */
             /*@ assert counting < 8; */
             LABIAL_CHECK(counting < LABIAL_PHONEME_COMPONENTS_MAX);
             selection->components[counting] = (uint8_t)c;
-            selection->shares[counting] = (uint16_t)share;
-            selection->tilts[counting++] = (int16_t)(((int32_t)share * deviations[c]) >> 6);
+            selection->shares[counting] = share;
+            selection->tilts[counting++] = (int16_t)((share * deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -229,6 +229,9 @@ static void part(const labial_model_t *model, const uint8_t *label, int16_t targ
     channels = contacts_of(model, *behind) & contacts_of(model, *ahead);
     last = floors_of(model, *behind);
     next = floors_of(model, *ahead);
+    /* Only phonemes with floors make contact. */
+    /*@ assert last != \null && next != \null; */
+    LABIAL_CHECK(last && next);
     for (fap = 0; fap < LABIAL_CHANNELS; fap++) {
         const unsigned k = model->sources[fap];
         if (parted[fap] && (channels >> k & 1u)) { /* FAP 17, which may have no channel, does not part */

@@ -17,7 +17,7 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
 void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on)
 {
     /*@ assert 1 <= length <= 1000; */
-    /*@ assert closing <= length; */
+    /*@ assert closing <= 1000; */
     (void)goes_on;
     fade->step = 1;
     fade->length = (uint16_t)length;
