@@ -87,7 +87,7 @@ static uint32_t keep_part(int32_t x, uint32_t inverse, unsigned shift, uint16_t 
 }
 
 /* Advances to the position of the pending frame given all before it; `g` is its row sum, eliminated. */
-static void filter(labial_solver_t *solver, int32_t g)
+static void filter_row(labial_solver_t *solver, int32_t g)
 {
     const uint32_t inverse = reciprocal((uint32_t)g, &solver->shifts[0]);
     const unsigned shift = solver->shifts[0];
@@ -114,7 +114,7 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     if (g < hold)
         g = hold;
     /* GCOVR_EXCL_BR_STOP */
-    filter(solver, g);
+    filter_row(solver, g);
     factors->q = solver->q1;
     inverse = reciprocal((uint32_t)(g + f + second), &solver->shifts[1]);
     shift = solver->shifts[1];
