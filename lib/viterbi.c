@@ -123,18 +123,18 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     best = (unsigned)(least - costs);
     search->path[0] = (uint8_t)(first + best);
     trace(search, best, (int)(marks & LABIAL_UNIT_ENDS));
-    cost = costs; /* of the states that the next step sees: after a unit the best one alone */
-    if (marks & LABIAL_UNIT_ENDS) {
+    if (marks & LABIAL_UNIT_ENDS) { /* the next step sees the best state alone */
         first += best;
         size = 1;
         best = 0;
-        cost = least;
+        costs[0] = *least;
+        least = costs;
     }
     search->first = (uint8_t)first;
     search->count = (uint8_t)size;
     search->best = (uint8_t)best;
     for (i = 0; i < size; i++) {
-        const uint32_t above = cost[i] - *least;
+        const uint32_t above = costs[i] - *least;
         search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);
     }
 }
