@@ -34,6 +34,8 @@ static void begin(const labial_model_t *model)
 {
     memset(&units, 0xa5, sizeof units);
     labial_units_reset(&units);
+    units.pushed = 0; /* as labial_init() makes them; a reset leaves them */
+    memset(units.until, 0, sizeof units.until);
     models[0] = model;
     models[1] = &laugh.model;
 }
@@ -104,7 +106,7 @@ TEST(frames_wait_for_the_next_phoneme)
     push(FIXTURE_SIL, 0, 500); /* no kernels: a pause is a phoneme like others */
     assert_string_equal(take_all(0, LABIAL_STARVED), "5");
     push(FIXTURE_S, 0, 1);
-    (void)labial_units_uses(&units, 0);
+    (void)labial_units_uses(&units, 0, units.frames);
     assert_int_equal(units.frames, 501);
 }
 
@@ -406,14 +408,14 @@ TEST(the_queue_knows_its_models)
     labial_taken_t taken;
     begin(&plain.model);
     for (unsigned slot = 0; slot < LABIAL_MODELS; slot++)
-        assert_int_equal(labial_units_uses(&units, slot), 0);
+        assert_int_equal(labial_units_uses(&units, slot, units.frames), 0);
     push(FIXTURE_A, 0, 1), push(FIXTURE_O, 0, 1);
-    assert_int_equal(labial_units_uses(&units, 0), 1);
-    assert_int_equal(labial_units_uses(&units, 1), 0);
+    assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
+    assert_int_equal(labial_units_uses(&units, 1, units.frames), 0);
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
-    assert_int_equal(labial_units_uses(&units, 0), 1);
+    assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
     assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
-    assert_int_equal(labial_units_uses(&units, 0), 0);
+    assert_int_equal(labial_units_uses(&units, 0, units.frames), 0);
 }
 
 /* Of the longest phoneme there may be, at 250 frames a second: every frame's share, as for few frames. Would catch numbers

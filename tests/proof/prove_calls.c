@@ -60,16 +60,27 @@ int prove_clock(void)
     return 0;
 }
 
-/* Any model, also one that labial_model_check() refuses, whose phonemes are there. */
+/* Any model, also one that labial_model_check() refuses, whose phonemes are there; and any stream of models that have a
+ * frame rate. */
 int prove_cost(void)
 {
     static labial_phoneme_t some[255];
-    labial_model_t model;
+    static labial_t stream;
+    static labial_model_t model;
+    unsigned i;
     FILL(some);
     FILL(model);
     model.phonemes = some;
     labial_model_cost(0);
-    return (int)labial_model_cost(&model);
+    labial_model_cost(&model);
+    labial_workspace_size(OR_NULL(const labial_model_t *, &model));
+    Frama_C_make_unknown((char *)&stream, sizeof stream);
+    model.frames_per_second = (uint16_t)Frama_C_interval(1, 250);
+    for (i = 0; i < LABIAL_MODELS; i++)
+        stream.models[i] = &model;
+    stream.slot = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    labial_uses(OR_NULL(const labial_t *, &stream), OR_NULL(const labial_model_t *, &model));
+    return (int)labial_latency(OR_NULL(const labial_t *, &stream)).frames;
 }
 
 /* Any two arrays, or null. */
@@ -168,7 +179,7 @@ int prove_units(void)
                               (uint32_t)Frama_C_interval(0, LABIAL_DURATION_MAX), (uint32_t)Frama_C_interval(1, 250));
         labial_units_take(&units, models, any_int, &taken);
         labial_units_left(&units, models);
-        labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1));
+        labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1), any_uint32);
         labial_units_next(&units, models, any_int, &spoken);
         if (any_int)
             labial_units_reset(&units);

@@ -35,7 +35,7 @@ static void fade_to_motion(int step, int length, int closing)
     any_pose();
     fade.step = (uint16_t)step;
     fade.length = (uint16_t)length;
-    labial_fade_close(&fade, (unsigned)closing);
+    fade.closing = (uint16_t)closing;
     labial_fade_to(&fade, wanted);
 }
 
@@ -48,7 +48,7 @@ static void fade_to_rest(int least, int most)
     fade.length = fade.closing = (uint16_t)Frama_C_interval(least, most);
     labial_fade_to(&fade, NULL);
     any_pose();
-    labial_fade_begin(&fade, (unsigned)Frama_C_interval(least, most), any_int);
+    labial_fade_begin(&fade, (unsigned)Frama_C_interval(least, most), (unsigned)Frama_C_interval(0, most), any_int);
 }
 
 int prove_fade(void)
@@ -66,7 +66,6 @@ int prove_fade(void)
     labial_fade_faps(&fade, faps);
     labial_fade_rests(&fade);
     labial_fade_opening(&fade);
-    labial_fade_stand(&fade);
     return 0;
 }
 
