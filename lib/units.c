@@ -34,7 +34,7 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
     const uint32_t frames = labial_quotient(thousandths, 1000u);
     units->remainder = (uint16_t)(thousandths - frames * 1000u);
     if (frames > 0) {
-        const unsigned i = (unsigned)units->head + units->count;
+        unsigned i = (unsigned)units->head + units->count;
         labial_segment_t *segment = &units->segments[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
         segment->frames = frames;
         segment->ms = (uint16_t)(milliseconds < 65535u ? milliseconds : 65535u);
@@ -42,8 +42,9 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
         segment->slot = (uint8_t)slot;
         units->count++;
         units->frames += frames;
-        units->pushed += frames;
-        units->until[slot] = units->pushed;
+        for (i = 0; i < LABIAL_MODELS; i++)
+            units->since[i] += frames;
+        units->since[slot] = 0;
     }
     return frames;
 }

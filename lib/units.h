@@ -81,7 +81,7 @@ uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *co
 /* Whether one of the latest `pending` frames that were pushed is of the model in `slot`. */
 static inline int labial_units_uses(const labial_units_t *units, unsigned slot, uint32_t pending)
 {
-    return units->pushed - units->until[slot] < pending;
+    return units->since[slot] < pending;
 }
 
 #endif

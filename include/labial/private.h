@@ -22,16 +22,15 @@ typedef struct {
 /* The queue of phonemes that were pushed and whose frames are not all accepted yet (units.c). */
 typedef struct {
     uint8_t head, count;
-    uint8_t begins;                /* the next frame is the first of a solution */
-    uint8_t rested;                /* the oldest segment is a pause that a solution began with */
-    uint8_t labelled;              /* segments that have labels, the oldest ones */
+    uint8_t begins;                       /* the next frame is the first of a solution */
+    uint8_t rested;                       /* the oldest segment is a pause that a solution began with */
+    uint8_t labelled;                     /* segments that have labels, the oldest ones */
+    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
     uint16_t remainder;            /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
     uint32_t taken;                /* frames of the oldest segment that were accepted */
     uint32_t frames;               /* of all segments, not yet accepted */
     uint32_t unlabelled;           /* frames of the last of these that have no label yet */
-    uint32_t pushed;               /* frames of all phonemes so far, modulo 2^32 */
-    uint32_t until[LABIAL_MODELS]; /* those up to the last one of the model in each slot */
-    uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
+    uint32_t since[LABIAL_MODELS]; /* frames pushed since the last one of the model in each slot, modulo 2^32 */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
 

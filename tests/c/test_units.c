@@ -34,8 +34,7 @@ static void begin(const labial_model_t *model)
 {
     memset(&units, 0xa5, sizeof units);
     labial_units_reset(&units);
-    units.pushed = 0; /* as labial_init() makes them; a reset leaves them */
-    memset(units.until, 0, sizeof units.until);
+    memset(units.since, 0, sizeof units.since); /* as labial_init() makes them; a reset leaves them */
     models[0] = model;
     models[1] = &laugh.model;
 }
