@@ -167,7 +167,7 @@ def test_every_row_of_a_table_has_the_cells_of_its_header(page: Path) -> None:
 
 def prepare(page: Path, folder: Path) -> None:
     """Makes what a page's reader has before its first command, or makes with commands that are not run: for README.md
-    the source tree, for record.md recordings and a model, for arduino.md the folder into which `labial` was installed."""
+    the source tree, for record.md recordings and a model, for arduino.md the folder that `labial` was installed in."""
     if page.name == "README.md":
         copy_sources(folder)
         return
