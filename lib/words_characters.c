@@ -33,6 +33,12 @@ static const struct {
                { 0xfb02u, 'f', 'l', 0 },      { 0xfb03u, 'f', 'f', 'i' },       { 0xfb04u, 'f', 'f', 'l' },
                { 0xfb05u, 's', 't', 0 },      { 0xfb06u, 's', 't', 0 } };
 
+/* Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer; and as what
+ * it is read. */
+static const uint16_t foreign_stops[] = { 0x37e, 0x589, 0x5be,  0x5c3,  0x60c,  0x61b,  0x61f,  0x6d4,
+                                          0x964, 0x965, 0x104a, 0x104b, 0x1362, 0x1363, 0x17d4, 0x17d5 };
+static const char read_stops[] = "?.-.,;?...,..,..";
+
 /* Fractions of U+00BC to U+00BE and of U+2153 to U+215E: 16 times the denominator, plus the numerator. */
 static const uint8_t fractions[] = { 0x41, 0x21, 0x43, 0x31, 0x32, 0x51, 0x52, 0x53,
                                      0x54, 0x61, 0x65, 0x81, 0x83, 0x85, 0x87 };
@@ -119,6 +125,9 @@ static unsigned simplified(uint32_t code, unsigned *pending)
             *pending = others[i].more | (unsigned)others[i].most << 8;
             return others[i].code;
         }
+    for (i = 0; i < sizeof foreign_stops / sizeof foreign_stops[0]; i++)
+        if (foreign_stops[i] == code)
+            return (unsigned char)read_stops[i];
     if (code >= 0xc0u && code < 0x180u)
         return (unsigned char)plain_letters[code - 0xc0u];
     for (i = 0; i < sizeof foreign / sizeof foreign[0]; i++)

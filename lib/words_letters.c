@@ -10,7 +10,7 @@
 #include "words_parts.h"
 
 /* Names of letters, as words that the trees read so; with an s where that is more than an added Z. */
-static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0gee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
+static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0jee\0aitch\0eye\0jay\0kay\0ell\0em\0en\0oh\0pee\0cue\0"
                                    "are\0ess\0tee\0you\0vee\0double you\0ex\0why\0zee\0";
 static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
@@ -24,7 +24,7 @@ static const char *const meanings[] = {
     "dr\0doctor\0dept\0department\0debris\0deh bree\0diy\0-\0",
     "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0eu\0-\0exit\0+\0",
     "fi\0fie\0facade\0fah sod\0ftp\0-\0fyi\0-\0faq\0-\0flat\0+\0fig\0+\0figure\0+\0",
-    "govt\0government\0gnu\0new\0gmail\0gee mail\0gpu\0-\0gate\0+\0gates\0+\0",
+    "govt\0government\0gnu\0new\0gmail\0jee mail\0gee\0jee\0gpu\0-\0gate\0+\0gates\0+\0",
     ("http\0-\0https\0-\0hwy\0highway\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0hahaha\0hah hah hah\0"
      "hehe\0hee hee\0hdmi\0-\0hbo\0-\0hall\0+\0"),
     "idk\0-\0id\0-\0",
@@ -96,7 +96,7 @@ static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
 /* Small letters without a vowel that are not read one by one: sounds and parts of words. */
 static const char small_sounds[] = "hm\0hmm\0mm\0mhm\0grr\0brr\0pfft\0pff\0pst\0psst\0sh\0shh\0ssh\0tsk\0tss\0tch\0"
-                                   "hmph\0nth\0zz\0bzz\0ll\0nt\0th\0nd\0";
+                                   "hmph\0nth\0zz\0bzz\0ll\0nt\0th\0nd\0mc\0ng\0";
 
 /* How words begin and end, and vowels that stand together in them; at the end of three letters the second list. */
 static const char word_onsets[] =
@@ -198,16 +198,21 @@ static int is_pronounceable(const char *letters, unsigned count)
     return is_other || last == count;
 }
 
-/* How many letters of a run of small ones are read one by one: two to five without a vowel, none of them three times in
- * a row; behind them there is nothing or 's. */
+/* How many letters of a run stand before an 's: all where there is none. */
+static unsigned owner_length(const run_t *run)
+{
+    const unsigned count = run->count;
+    return count > 2u && run->letters[count - 1u].letter == 19u && run->letters[count - 2u].letter == 27u ? count - 2u
+                                                                                                          : count;
+}
+
+/* How many letters of a run with small ones are read one by one: two to five without a vowel, none of them three times
+ * in a row; behind them there is nothing or 's. */
 static unsigned spelt_small_letters(const run_t *run)
 {
     const char *const letters = run->capitals;
-    unsigned count = run->count, i;
-    if (count - 2u > 5u)
-        return 0;
-    if (run->letters[count - 1u].letter == 19u && run->letters[count - 2u].letter == 27u)
-        count -= 2u;
+    const unsigned count = owner_length(run);
+    unsigned i;
     if (count - 2u > 3u)
         return 0;
     for (i = 0; i < count; i++)
@@ -217,8 +222,8 @@ static unsigned spelt_small_letters(const run_t *run)
     return labial_words_is_listed(letters, count, small_sounds) ? 0u : count;
 }
 
-/* How many letters at the beginning of a run are read one by one, all of them capitals or small; behind them there is
- * nothing, an s or 's. */
+/* How many letters at the beginning of a run are read one by one, all of them capitals or without a vowel; behind them
+ * there is nothing, an s or 's. */
 static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
 {
     const char *const letters = run->capitals;
@@ -228,14 +233,11 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
                (letters[0] == 'A' && run->small == 0u &&
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
                  run->before == '/' || !labial_words_is_blank(follows)));
-    if (run->is_small)
-        return spelt_small_letters(run);
     if (run->small != 0u) {
-        if (run->letters[count - 1u].letter != 19u || (run->small >> (count - 1u)) == 0u) /* a small s */
-            return 0;
-        count -= count > 2u && run->letters[count - 2u].letter == 27u ? 2u : 1u;
+        if (run->letters[count - 1u].letter == 19u && run->small >> (count - 1u) != 0u)
+            count = owner_length(run) < count ? count - 2u : count - 1u;
         if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
-            return 0;
+            return spelt_small_letters(run);
     }
     if (count < 2u || count > 5u)
         return 0;
@@ -411,19 +413,19 @@ static int read_street(labial_words_reading_t *reading, const run_t *run)
     return 1;
 }
 
-/* The number of Roman numerals up to 29, or 0. They are three letters or more, II, or two capitals behind a name or
- * what is numbered. */
+/* The number of Roman numerals up to 29, without an 's behind them, or 0. They are three letters or more, II, or two
+ * capitals behind a name or what is numbered. */
 static unsigned roman(const run_t *run, int is_named)
 {
+    const unsigned count = owner_length(run);
     unsigned tens = 0;
     int ones;
-    if (run->count < 2u || run->count > 6u ||
-        (run->capitals[0] != 'I' && run->capitals[0] != 'V' && run->capitals[0] != 'X'))
+    if (count < 2u || count > 6u || (run->capitals[0] != 'I' && run->capitals[0] != 'V' && run->capitals[0] != 'X'))
         return 0;
     while (tens < 2u && run->capitals[tens] == 'X')
         tens++;
-    ones = labial_words_find(run->capitals + tens, run->count - tens, "i\0ii\0iii\0iv\0v\0vi\0vii\0viii\0ix\0", 1);
-    if (ones < 0 || (run->count == 2u && ones != 1 && (!is_named || run->small != 0u)))
+    ones = labial_words_find(run->capitals + tens, count - tens, "i\0ii\0iii\0iv\0v\0vi\0vii\0viii\0ix\0", 1);
+    if (ones < 0 || (count == 2u && ones != 1 && (!is_named || (run->small & 3u) != 0u)))
         return 0;
     return tens * TEN + (unsigned)ones + 1u;
 }
@@ -595,6 +597,8 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     number = roman(&run, named != 0u || after == AFTER_PLACE);
     if (number != 0u) {
         labial_words_say_small(reading, number, CARDINAL, run.letters[0].character);
+        if (owner_length(&run) < run.count)
+            labial_words_append(reading->word, PHONEME_Z, run.letters[owner_length(&run) - 1u].character, 0);
         return;
     }
     if ((named && read_street(reading, &run)) || read_rule(reading, &run, after, shouting))

@@ -262,6 +262,19 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
            word[count - 1u] == 'S' && word[count - 2u] != 'S' && !labial_words_is_listed(word, count, not_verbs);
 }
 
+/* The character that ends the tag or stage direction that begins here; 0 if none does. */
+static unsigned tag_closing(const labial_words_place_t *here)
+{
+    const unsigned code = here->code, follows = labial_words_following(here);
+    if (code == '[')
+        return labial_words_is_blank(follows) ? 0u : ']';
+    if (code == '<')
+        return labial_words_is_latin(follows) || follows == '/' || follows == '!' || follows == '?' ? '>' : 0u;
+    if ((code == '(' || code == '*') && here->before != '*' && is_direction(here, code == '(' ? ')' : '*'))
+        return code == '(' ? ')' : '*';
+    return 0;
+}
+
 static void open_tag(labial_words_reading_t *reading, unsigned closing)
 {
     (void)labial_words_forget(reading);
@@ -305,41 +318,13 @@ static void read_joint(labial_words_reading_t *reading)
     }
 }
 
-/* Reads what is no letter and no digit. */
-static void read_sign(labial_words_reading_t *reading)
+/* Says a sign as it is read behind what came `after`; stays on it, or on its last character. */
+static void say_sign(labial_words_reading_t *reading, unsigned after)
 {
     labial_words_place_t *here = &reading->here;
     const unsigned code = here->code, follows = labial_words_following(here);
-    const unsigned closing = code == '(' ? ')' : '*';
     const char *const said = labial_words_said_of(signs, code);
-    const int currency = labial_words_currency(code);
-    unsigned after;
-    int is_counted;
-    if ((code == '[' && !labial_words_is_blank(follows)) ||
-        (code == '<' && (labial_words_is_latin(follows) || follows == '/' || follows == '!' || follows == '?'))) {
-        open_tag(reading, code == '[' ? ']' : '>');
-        return;
-    }
-    if ((code == '(' || code == '*') && here->before != '*' && is_direction(here, closing)) {
-        open_tag(reading, closing);
-        return;
-    }
-    if (reading->context->after >= AFTER_DATE && !reading->is_address && here->before != ' ' &&
-        (code == ',' || code == '-' || code == '/')) {
-        reading->context->named = 0;
-        labial_words_advance(here);
-        return;
-    }
-    after = labial_words_forget(reading);
-    reading->context->tail = reading->context->named = 0;
-    if (code != '-')
-        reading->has_letters = 0;
-    is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
-    if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
-        reading->context->after = AFTER_NUMBER;
-        labial_words_read_fraction(reading);
-        return;
-    }
+    const int currency = labial_words_currency(code), is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
     if (code == SIGN_DEGREE) {
         read_degrees(reading, after);
     } else if (code == '/' && (after == AFTER_UNIT || after == AFTER_SUM) && labial_words_is_latin(follows)) {
@@ -361,6 +346,34 @@ static void read_sign(labial_words_reading_t *reading)
     } else if (said) {
         labial_words_say_here(reading, said);
     }
+}
+
+/* Reads what is no letter and no digit. */
+static void read_sign(labial_words_reading_t *reading)
+{
+    labial_words_place_t *here = &reading->here;
+    const unsigned code = here->code, closing = tag_closing(here);
+    unsigned after;
+    if (closing != 0u) {
+        open_tag(reading, closing);
+        return;
+    }
+    if (reading->context->after >= AFTER_DATE && !reading->is_address && here->before != ' ' &&
+        (code == ',' || code == '-' || code == '/')) {
+        reading->context->named = 0;
+        labial_words_advance(here);
+        return;
+    }
+    after = labial_words_forget(reading);
+    reading->context->tail = reading->context->named = 0;
+    if (code != '-')
+        reading->has_letters = 0;
+    if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
+        reading->context->after = AFTER_NUMBER;
+        labial_words_read_fraction(reading);
+        return;
+    }
+    say_sign(reading, after);
     labial_words_advance(here);
     if (code == '%')
         (void)labial_words_read_range(reading);

@@ -103,7 +103,7 @@ def npm(bench: Bench) -> None:
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "web" / "labial.wasm"
-    names = ("heard.js", "index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
+    names = ("index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
              "unpack.js")
     scripts = [folder / "npm" / name for name in names]
     laughter = folder / "npm-laughter" / "index.js"

@@ -18,20 +18,15 @@ from measure.core import Bench, run, tool, version
 CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "followers", "fade", "fixed")
 
 LEVELS = ("-Os", "-O2")
-
 #: The option by which the compiler writes frames and calls beside an object, which it does not change.
 CALLS = "-fcallgraph-info=su,da"
-
 #: What a program calls that moves servos by a stream and a clock.
 FACE = ("labial_face_init", "labial_face_frame", "labial_face_due", "labial_face_tick", "labial_face_soft_start",
         "labial_face_attached")
-
 #: The bundled models: their C file, and their names here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
-
 #: What an Arduino's processor is measured with, too.
 BESIDE = "beside, one output, 128 frames ahead"
-
 #: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the voice, except for
 #: rounding to four.
 PARTS = {
@@ -46,14 +41,12 @@ PARTS = {
     "workspace: motion": "STRIDE * COUNT * sizeof(int16_t)",
     "workspace: shapes": "2 * COUNT * sizeof(labial_shape_t)",
 }
-
 #: States of the modules beside the stream, and lips beside the audio with one output and 128 frames ahead, in C.
 STATES = {
     **{f"labial_{name}_t": f"sizeof(labial_{name}_t)" for name in
        ("hear", "words", "voice", "laugh", "timings", "beside", "face", "clock")},
     BESIDE: "sizeof(labial_beside_t) + LABIAL_BESIDE_SIZE(1, 128)",
 }
-
 #: Frames that share a state in the voice, and its channels.
 STRIDE = 3
 COUNT = 8

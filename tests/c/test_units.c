@@ -1,5 +1,5 @@
 /*
- * test_units.c - phonemes to frames: small cases worked by hand, and random streams against oracle_units.c, which expands
+ * test_units.c - phonemes to frames: small cases worked by hand, and random streams against oracle_steps.c, which expands
  * the whole of its input at once.
  */
 #include "suite.h"

@@ -193,12 +193,12 @@ TEST(questions_are_those_of_the_format)
         unsigned question;
         const char *text, *answers;
     } cases[] = {
-        /* Capitals, since small letters without a vowel would be spelt. */
-        { 0 * 32 + 20, "Ttpp", "_D:0 B:1 B:2 D:3" },      /* t is just before it */
+        /* With a vowel, or three of one letter in a row: others would be spelt. */
+        { 0 * 32 + 20, "ttppa", "_D:0 B:1 B:2 D:3 D:4" }, /* t is just before it */
         { 3 * 32 + 20, "tpppp", "_D:0 D:1 D:2 D:3 B:4" }, /* four before */
-        { 4 * 32 + 20, "Ptt", "_B:0 B:1 D:2" },           /* just behind */
+        { 4 * 32 + 20, "ptta", "_B:0 B:1 D:2 D:3" },      /* just behind */
         { 7 * 32 + 20, "pppptt", "_B:0 B:1 D:2 D:3 D:4 D:5" },
-        { 0 * 32, "Pt", "_B:0 D:1" }, /* nothing before it */
+        { 0 * 32, "pta", "_B:0 D:1 D:2" }, /* nothing before it */
         { 7 * 32, "pptttt", "_D:0 D:1 B:2 B:3 B:4 B:5" },
         { 0 * 32 + 28, "apytbp", "_D:0 B:1 D:2 B:3 D:4 D:5" }, /* a vowel before */
         { 0 * 32 + 29, "apytip", "_D:0 D:1 D:2 B:3 D:4 B:5" }, /* e, i, y */
@@ -211,7 +211,7 @@ TEST(questions_are_those_of_the_format)
         { 256 + 61, "pxot", "_B:0 K:1 S:1 OW:2 D:3" },         /* it is a pair */
         { 256 + 62, "petot", "_B:0 D:2 OW:3 B:4" },            /* it is silent, or outside */
         { 256 + 63, "petot", "_D:0 D:2 OW:3 B:4" },            /* outside alone */
-        { 320 + 63, "Ptt", "_D:0 B:1 B:2" },
+        { 320 + 63, "ptta", "_D:0 D:1 B:2 B:3" },
         { 384 + 0, "pooptaptt", "_D:0 OW:1 OW:2 D:3 D:4 B:5 B:6 B:7 B:8" }, /* no vowels to the right */
         { 384 + 1, "paptapt", "_D:0 B:1 B:2 B:3 B:4 B:5 B:6" },
         { 392 + 0, "ptaaptat", "_B:0 B:1 B:2 D:3 D:4 D:5 D:6 D:7" }, /* to the left */

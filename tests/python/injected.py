@@ -19,7 +19,6 @@ import shutil
 import signal
 import sys
 import types
-import wave
 from pathlib import Path
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
@@ -36,11 +35,11 @@ from labial.corpus.episode import Segment
 from labial.evaluate.loss import measure
 from labial.evaluate.material import Options
 from labial.evaluate.protocol import evaluate
-from labial.see import drawing
+from labial.see import plot
 from labial.tables.model import save
 from labial.tables.phones import drawn_streams
 from labial.tables.quantise import quantise
-from models import random_model, write_motion
+from models import random_model, write_motion, write_wav
 from test_record import talking
 from test_record import write as write_landmarks
 
@@ -82,15 +81,15 @@ def _measured(*_: Any) -> Any:
 
 
 def _evaluate() -> None:
-    from labial.evaluate import plots
+    from labial.evaluate import report
 
     def blank(_: Any, __: Any, folder: Path) -> List[str]:
         for name in PICTURES:
-            drawing.write(pyplot.figure(figsize=(1, 1)), folder / name)
+            plot.write(pyplot.figure(figsize=(1, 1)), folder / name)
         return PICTURES
 
     labial.evaluate.protocol.run_split = lambda _, split, __: _outcomes()[split.number]  # type: ignore[assignment]
-    plots.write = blank
+    report.draw = blank
 
 
 @functools.cache
@@ -164,10 +163,10 @@ def _evaluate_hear() -> None:
 
 
 def _speech_corpus() -> None:
-    from labial.hearing import speech_corpus, voices
+    from labial.hearing import voices
 
     said = voices.Spoken(np.arange(8000, dtype=np.int16), 16000, (Segment(0.0, 0.5, "SIL"),))
-    speech_corpus.speak = lambda *_: iter([said])  # type: ignore[assignment]
+    voices.speak = lambda *_: iter([said])  # type: ignore[assignment]
 
 
 def cases() -> Dict[str, Case]:
@@ -214,9 +213,7 @@ def given() -> None:
     Path("face.toml").write_text(FACE)
     write_motion(Path("f.csv"), np.arange(40) / 50, 20 * np.sin(np.add.outer(np.arange(40), np.arange(13))))
     write_landmarks(Path(), "seen", landmarks=talking()[0])
-    with wave.open("a.wav", "wb") as sound:
-        sound.setparams((1, 2, 16000, 0, "NONE", ""))
-        sound.writeframes(bytes(64000))
+    write_wav(Path("a.wav"), np.zeros(32000))
 
 
 def lay(case: Case) -> None:

@@ -1,12 +1,20 @@
-"""Messages of speech services, for tests of their readers: the samples of services.json, and messages about words,
-drawn at random."""
+"""Messages of speech services, for tests of their readers: the samples of services.json, messages about words, drawn
+at random, and a service that sends them."""
 
 from __future__ import annotations
 
+import base64
 import json
 import random
+import struct
+import threading
+import time
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, Dict, List, NamedTuple, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Tuple
+
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.server import ServerConnection, serve
 
 #: What stands in texts.
 PIECES = ["Maybe", "people", "hum.", "2024", "$5.50", "1,234", "[laughs]", "<b>", "</b>", "[", "]", "Zürich", "it's",
@@ -138,3 +146,40 @@ class Sample(NamedTuple):
 #: The samples of services.json, by their names.
 SAMPLES = {item["name"]: Sample(item["service"], item["messages"], item.get("phonemes", "SIL M EY B IY SIL G OW"))
            for item in json.loads(Path(__file__).with_name("services.json").read_text(encoding="utf-8"))["samples"]}
+
+
+# ---- A stand-in for ElevenLabs' stream of sound and characters over a WebSocket, on this machine ---------------------
+
+
+#: Samples per second of its sound.
+RATE = 16000
+
+
+def answers(text: str, pace: int = 70) -> List[Dict[str, Any]]:
+    """The answers to a text: for each sentence a message with its sound, 16 bits in base64, a hum as long as its
+    characters, each of which lasts `pace` milliseconds; times begin at 0 in each, and the last one says ``isFinal``."""
+    found = []
+    for sentence in (f"{part.strip()}." for part in text.split(".") if part.strip()):
+        characters = [*sentence, " "]
+        length = pace * len(characters)
+        samples = [round(3000 * ((n * 110 // RATE) % 2 * 2 - 1)) for n in range(RATE * length // 1000)]
+        alignment = {"chars": characters, "charStartTimesMs": [pace * n for n in range(len(characters))],
+                     "charsDurationsMs": [pace] * len(characters)}
+        found.append({"audio": base64.b64encode(struct.pack(f"<{len(samples)}h", *samples)).decode(),
+                      "isFinal": None, "alignment": alignment, "normalizedAlignment": alignment})
+    return [*found, {"audio": None, "isFinal": True, "alignment": None, "normalizedAlignment": None}]
+
+
+@contextmanager
+def elevenlabs(wait: float = 0.25) -> Iterator[str]:
+    """Serves any number of clients, `wait` seconds before each message; the address. A client connects, sends its text
+    in pieces, as JSON, and an empty text at the end."""
+    def speak(client: ServerConnection) -> None:
+        with suppress(ConnectionClosed):  # it went away
+            for message in answers("".join(iter(lambda: json.loads(client.recv())["text"], ""))):
+                time.sleep(wait)
+                client.send(json.dumps(message))
+
+    with serve(speak, "127.0.0.1", 0, compression=None) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"ws://127.0.0.1:{server.socket.getsockname()[1]}"

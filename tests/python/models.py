@@ -1,8 +1,9 @@
-"""Models, phoneme streams and corpora made up for the tests."""
+"""Models, phoneme streams, sounds and corpora made up for the tests."""
 
 from __future__ import annotations
 
 import io
+import wave
 import zipfile
 from dataclasses import replace
 from pathlib import Path
@@ -137,6 +138,16 @@ def write_motion(path: Path, times: Iterable[float], frames: np.ndarray) -> Path
     """Writes (T, 13) FAPs at these seconds as a file of frames."""
     rows = (",".join([f"{time:.3f}", *(f"{value:.12g}" for value in row)]) for time, row in zip(times, frames))
     path.write_text("\n".join([HEADER, *rows]) + "\n")
+    return path
+
+
+def write_wav(path: Path, sound: np.ndarray, rate: int = 16000, width: int = 2) -> Path:
+    """A WAV file of samples (N,) or (N, channels)."""
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1 if sound.ndim == 1 else sound.shape[1])
+        file.setsampwidth(width)
+        file.setframerate(rate)
+        file.writeframes(sound.astype({1: "u1", 2: "<i2", 4: "<i4"}[width]).tobytes())
     return path
 
 

@@ -37,7 +37,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
+from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
@@ -53,28 +53,18 @@ LABELS = ("sh", "c", "cpp", "python", "js", "cmake", "html", "toml", "ini", "jso
 
 #: Tools that a page may use and a machine may lack, and what installs each.
 TOOLS: Dict[str, str] = {
+    **{name: f"the Debian package {name}" for name in (
+        "chromium", "clang", "cmake", "espeak-ng", "flite", "g++", "npm", "qemu-system-arm", "valgrind")},
+    **{name: "a build with LABIAL_BUILD_EXAMPLES" for name in (
+        "labial-bench", "labial-demo", "labial-hear", "labial-rig-sprites", "labial-say")},
     "arm-none-eabi-gcc": "the Debian package gcc-arm-none-eabi",
     "arm-none-eabi-g++": "the Debian package libstdc++-arm-none-eabi-newlib",
     "avr-gcc": "the Debian packages gcc-avr and avr-libc",
-    "chromium": "the Debian package chromium",
-    "clang": "the Debian package clang",
-    "cmake": "the Debian package cmake",
-    "espeak-ng": "the Debian package espeak-ng",
-    "flite": "the Debian package flite",
-    "g++": "the Debian package g++",
-    "labial-bench": "a build with LABIAL_BUILD_EXAMPLES",
-    "labial-demo": "a build with LABIAL_BUILD_EXAMPLES",
-    "labial-hear": "a build with LABIAL_BUILD_EXAMPLES",
-    "labial-rig-sprites": "a build with LABIAL_BUILD_EXAMPLES",
-    "labial-say": "a build with LABIAL_BUILD_EXAMPLES",
     "labial-say-espeak": "the Debian package libespeak-ng-dev, before the build",
     "labial-say-flite": "the Debian package flite1-dev, before the build",
     "node": "the Debian package nodejs",
-    "npm": "the Debian package npm",
     "pkg-config": "the Debian package pkgconf",
-    "qemu-system-arm": "the Debian package qemu-system-arm",
     "simavr": "the Debian packages simavr and libsimavr-dev",
-    "valgrind": "the Debian package valgrind",
     "wasm-ld": "the Debian package lld",
 }
 
@@ -401,28 +391,20 @@ class Runner:
         if not block.name or not any(other.label == "sh" for other in later):
             raise PageError('an html block begins with "<!-- NAME.html -->", and an sh block below it looks at it')
 
-    def _toml(self, block: Block, later: Sequence[Block]) -> None:
+    def _parsed(self, block: Block, later: Sequence[Block]) -> None:
+        import yaml
+
         try:
             import tomllib
         except ModuleNotFoundError:  # Python before 3.11
             import tomli as tomllib
-        self._parsed(tomllib.loads, block.text, tomllib.TOMLDecodeError)
-
-    def _ini(self, block: Block, later: Sequence[Block]) -> None:
-        text = block.text if re.search(r"^\[", block.text, re.MULTILINE) else "[all]\n" + block.text
-        self._parsed(configparser.ConfigParser(interpolation=None).read_string, text, configparser.Error)
-
-    def _json(self, block: Block, later: Sequence[Block]) -> None:
-        self._parsed(json.loads, block.text, ValueError)
-
-    def _yaml(self, block: Block, later: Sequence[Block]) -> None:
-        import yaml
-
-        self._parsed(yaml.safe_load, block.text, yaml.YAMLError)
-
-    @staticmethod
-    def _parsed(parse_text: object, text: str, error: type) -> None:
+        ini = configparser.ConfigParser(interpolation=None)
+        has_section = block.label != "ini" or re.search(r"^\[", block.text, re.MULTILINE)
+        read: Callable[[str], object] = {"toml": tomllib.loads, "ini": ini.read_string, "json": json.loads,
+                                         "yaml": yaml.safe_load}[block.label]
         try:
-            parse_text(text)  # type: ignore[operator]
-        except error as what:
-            raise PageError(str(what)) from None
+            read(block.text if has_section else "[all]\n" + block.text)
+        except (ValueError, configparser.Error, yaml.YAMLError) as error:  # TOMLDecodeError is a ValueError
+            raise PageError(str(error)) from None
+
+    _toml = _ini = _json = _yaml = _parsed

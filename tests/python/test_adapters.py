@@ -12,18 +12,17 @@ from typing import Any, Callable, Dict, Iterator, List
 import numpy as np
 import pytest
 
-import elevenlabs
 import labial
 from avatars import add_skeleton, document_of, glb, made_head
 from browser import CHROMIUM, REASON, THREE_D, Browser, Page, served
 from labial.__main__ import main
 from labial.rig import description_of
+from messages import answers
 from models import lab
 from npm import TOOLS_MISSING, install, package, tools
 from packages import SOURCE
 from pages import parse
-from test_animation import APPLE
-from test_mouths import SAY, say
+from test_animation import APPLE, SAY, say
 
 PAGE = SOURCE / "docs" / "adapters.md"
 BROWSER = THREE_D
@@ -354,10 +353,10 @@ def test_talkinghead_follows_words(site: Any, browser: Browser) -> None:
         await speak(head, labial, messages(), { format: "elevenlabs", sampleRate: 16000 });
         await began;
         window.done = true;
-        """.replace("MESSAGES", json.dumps(elevenlabs.messages(WORDS)))))  # fmt: skip
+        """.replace("MESSAGES", json.dumps(answers(WORDS)))))  # fmt: skip
     page.wait_for("window.done", 60)
     assert page.errors() == []
-    frames = labial.render(labial.read_timings(elevenlabs.messages(WORDS)))
+    frames = labial.render(labial.read_timings(answers(WORDS)))
     arkit = labial.Rig("arkit")
     rows = [arkit.apply(frame) for frame in frames]
     first, seen = page.evaluate("[first, seen]")

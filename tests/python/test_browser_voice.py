@@ -12,9 +12,9 @@ from typing import Any, Dict, Iterator, List
 import numpy as np
 import pytest
 
-import elevenlabs
 import labial
 from browser import CHROMIUM, REASON, Browser, Page, served
+from messages import RATE, answers, elevenlabs
 from npm import TOOLS_MISSING, node, package
 from packages import SOURCE, needs_runtime
 from pages import parse
@@ -90,7 +90,7 @@ window.shown = [];
 window.talk = (address, text) => talk(address, text, ({ jawOpen }) => shown.push(jawOpen));
 Object.assign(window, { labial, ready: true });
 </script>
-""".replace("RATE", str(elevenlabs.RATE))
+""".replace("RATE", str(RATE))
 
 
 @pytest.fixture(scope="module")
@@ -121,13 +121,13 @@ def page(folder: Path, browser: Browser) -> Iterator[Page]:
 
 def expected() -> np.ndarray:
     """(T, 13) FAPs of all that is told, known from the beginning."""
-    messages = elevenlabs.messages(TEXT)
+    messages = answers(TEXT)
     return np.array(labial.render(labial.read_timings(messages, source="elevenlabs"), exact=True))
 
 
 def test_client_in_node(folder: Path) -> None:
     """Words that come in time: every frame is that of the whole answer, bit for bit, and none is late."""
-    with elevenlabs.voice() as address:
+    with elevenlabs() as address:
         done = subprocess.run([str(node(22)), "main.js", address, TEXT], cwd=folder, stdout=subprocess.PIPE, check=True,
                               timeout=60, encoding="utf-8")  # fmt: skip
     found: Dict[str, Any] = json.loads(done.stdout)
@@ -145,7 +145,7 @@ def opening(faps: np.ndarray) -> np.ndarray:
 
 def test_client_in_a_page(page: Page) -> None:
     """Catches a begin that is not that of the sound, a delay that is subtracted twice, and a face by another clock."""
-    with elevenlabs.voice() as address:
+    with elevenlabs() as address:
         page.evaluate(f"hear({address!r}, {TEXT!r})")
         page.wait_for("voice.done", 60)
     heard, seen, drawn = (np.array(page.evaluate(name)) for name in ("heard", "seen", "drawn"))
@@ -170,7 +170,7 @@ def test_client_in_a_page(page: Page) -> None:
 
 def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
     """The three files as they are; then a listener who interrupts: sound and lips end, and both begin again."""
-    with elevenlabs.voice(0.05) as address:
+    with elevenlabs(0.05) as address:
         page.evaluate(f"talk({address!r}, 'Mama.')")
         page.wait_for("shown.length > 5 && Math.max(...shown) > 0.1 && shown.at(-1) === 0", 60)
         page.evaluate(f"hear({address!r}, {TEXT!r})")
@@ -212,7 +212,7 @@ def test_an_answer_that_begins_at_once_can_be_interrupted(page: Page) -> None:
 
 def test_stand_in_is_what_readers_expect() -> None:
     """Each sentence is a message whose times begin at 0, as the sample of ElevenLabs' web socket has it."""
-    found: List[Dict[str, Any]] = elevenlabs.messages(TEXT)
+    found: List[Dict[str, Any]] = answers(TEXT)
     assert [message["isFinal"] for message in found] == [None, None, True]
     total = sum(len(message["alignment"]["chars"]) for message in found[:-1])
     timings = labial.read_timings(found)

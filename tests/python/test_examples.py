@@ -25,9 +25,10 @@ from labial.errors import LabialError
 from labial.program import run
 from labial.rig.description import read
 from labial.rig.table import convert
+from models import write_wav
 from packages import SOURCE, needs_runtime
+from packages import run as ran
 from test_hearing import voice
-from test_runtime_hearing import write_wav
 from voices import Piper
 
 PI = SOURCE / "examples" / "pi"
@@ -369,8 +370,7 @@ needs_programs = pytest.mark.skipif(not FOLDER, reason="LABIAL_RIG_EXAMPLES does
 
 def output(name: str) -> List[str]:
     """The lines that an example prints."""
-    program = Path(FOLDER) / f"labial-rig-{name}"
-    return subprocess.run([str(program)], capture_output=True, text=True, check=True).stdout.splitlines()
+    return ran(Path(FOLDER) / f"labial-rig-{name}").splitlines()
 
 
 def script() -> List[Tuple[str, int, int]]:

@@ -1,8 +1,8 @@
 """``labial fit``: avatars are read, their lips found, and a rig solved that shows what the FAPs mean.
 
 ``heads/ict_lips.csv`` has lip points of ICT-FaceKit's mean head, from light-stage scans, and what ARKit's shapes add to
-them (USC Institute for Creative Technologies, ``heads/LICENSE.ICT``). The sentences are those of test_mouths.py, which
-no rig was fitted to.
+them (USC Institute for Creative Technologies, ``heads/LICENSE.ICT``). The sentences are those of test_animation.py,
+which no rig was fitted to.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from labial.fit.head import Head, read_table
 from labial.fit.kinds import kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
-from labial.fit.sentences import Motion, read_sentences
+from labial.fit.solve import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 from packages import needs_runtime

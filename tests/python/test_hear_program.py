@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import labial
+from models import write_wav
 from packages import needs_runtime
 from test_animation import read_fap
 from test_hearing import voice
@@ -50,13 +51,6 @@ def pcm(samples: np.ndarray) -> bytes:
     return samples.astype("<i2").tobytes()
 
 
-def wav(path: Path, samples: np.ndarray, rate: int) -> str:
-    """Writes samples (N,) or (N, channels); the file's name."""
-    channels = 1 if samples.ndim == 1 else samples.shape[1]
-    path.write_bytes(riff(form(rate, channels), chunk(b"data", pcm(samples))))
-    return str(path)
-
-
 def wanted(samples: np.ndarray, rate: int = 16000, model: str = "hear_small", *, file: bool = False) -> List[List[int]]:
     """The frames of labial.Hearing; of a `file` at the level that is measured first."""
     with labial.Hearing(rate, 1 if samples.ndim == 1 else samples.shape[1], model=model) as hearing:
@@ -89,7 +83,7 @@ def test_frames_are_those_of_the_library(rate: int, tmp_path: Path) -> None:
     for name, samples in (("mono.wav", mono), ("stereo.wav", stereo)):
         expected = wanted(samples, rate, file=True)
         assert len(expected) == 35 + 12 and len({tuple(row) for row in expected}) > 9
-        assert motion(hear(wav(tmp_path / name, samples, rate))) == expected
+        assert motion(hear(str(write_wav(tmp_path / name, samples, rate)))) == expected
     large = motion(hear("--model=large", str(tmp_path / "mono.wav")))
     assert large == wanted(mono, rate, "hear_large", file=True) != wanted(mono, rate, file=True)
 
@@ -98,8 +92,8 @@ def test_a_file_is_heard_at_its_level(tmp_path: Path) -> None:
     """A voice 36 dB below: from a file its lips are those of the loud one, also in the first word; from a pipe, whose
     level is not known, they are others."""
     loud, faint = voice(0.7), voice(0.7) // 64
-    expected = np.array(motion(hear(wav(tmp_path / "loud.wav", loud, 16000))))
-    found = np.array(motion(hear(wav(tmp_path / "faint.wav", faint, 16000))))
+    expected = np.array(motion(hear(str(write_wav(tmp_path / "loud.wav", loud)))))
+    found = np.array(motion(hear(str(write_wav(tmp_path / "faint.wav", faint)))))
     piped = np.array(motion(hear("-", data=pcm(faint))))
     far, near = (np.sqrt(np.mean((item - expected)[:35] ** 2.0)) for item in (piped, found))
     assert near < 0.25 * far
@@ -151,7 +145,7 @@ def test_every_format_has_the_frames() -> None:
 
 def test_classes_are_timings(tmp_path: Path) -> None:
     """Catches classes with the names of others, times that do not join, and labels that labial-say does not know."""
-    path = wav(tmp_path / "voice.wav", SOUND, 16000)
+    path = str(write_wav(tmp_path / "voice.wav", SOUND))
     done = hear(path, "--classes")
     assert done.returncode == 0 and done.stderr == b""
     with labial.Hearing(model="hear_small") as hearing:

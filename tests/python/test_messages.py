@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import logging
 import re
-import subprocess
 import sys
 import time
 from collections import namedtuple
@@ -20,16 +19,18 @@ from typing import Any, Callable, Dict, List, Sequence, Tuple
 import pytest
 
 import labial
+from labial.corpus.formats import read_service
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.service_files import read
 from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
 from messages import SAMPLES
-from packages import CC, SOURCE, needs_runtime
+from packages import CC, SOURCE, needs_runtime, run
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
+#: An object of Gradium's client has the fields of another service, without values, and no type.
+GRADIUM = {"text": "go", "start_s": 0.5, "stop_s": 0.75, "client_req_id": None, "stream_id": None}
 
 
 def told(*messages: Any) -> List[Tuple[str, float, Any]]:
@@ -114,6 +115,7 @@ class _Derived:
     f"id: 7\nevent: word\ndata: {json.dumps(GO)}\n\n".encode(), f"retry: 9\ndata: {json.dumps(GO)}\n\n".encode(),
     f"event: word\nid: 7\ndata: {json.dumps(GO)}\n\n: waits\ndata: [DONE]\n\n", f"{{}}\n{json.dumps(GO)}\n",
     _Word("go", 0.5, 0.75), [_Word("go", 0.5, 0.75)], namedtuple("Word", GO)(**GO), _Event(),
+    namedtuple("TextWithTimestamps", GRADIUM)(**GRADIUM),
     *(_Dumps(name, GO) for name in ("model_dump", "to_dict", "dict")),
     {"text": "go", "audio_offset": 5_000_000, "duration": timedelta(milliseconds=250)},
     {"word_timestamps": _Dumps("model_dump", {"words": ["go"], "start": [0.5], "end": [0.75]})},
@@ -125,15 +127,9 @@ def test_what_users_hold(message: Any) -> None:
     assert told(message) == [("go", 0.5, 0.75)]
 
 
-def test_an_object_of_gradiums_client_is_read() -> None:
-    """It has the fields of another service, without values, and no type."""
-    fields = {"text": "go", "start_s": 0.5, "stop_s": 0.75, "client_req_id": None, "stream_id": None}
-    assert told(namedtuple("TextWithTimestamps", fields)(**fields)) == [("go", 0.5, 0.75)]
-    assert told({**fields, "stop_s": None}) == [("go", 0.5, None)]
-
-
-def test_a_time_of_zero_may_be_missing() -> None:
-    """As in the JSON of protobuf, with which Google answers."""
+def test_times_may_be_missing() -> None:
+    """An end that is not known; 0 in the JSON of protobuf, with which Google answers."""
+    assert told({**GRADIUM, "stop_s": None}) == [("go", 0.5, None)]
     found = told({"timepoints": [{"markName": "go"}, {"markName": "on", "timeSeconds": 0.5}]})
     assert [(text, start) for text, start, _ in found] == [("go", 0.0), ("on", 0.5)]
 
@@ -326,12 +322,10 @@ int main(int count, char **arguments)
 }
 """, encoding="ascii")
     options = [CC, "-O1", f"-I{SOURCE}/include", f"-I{SOURCE}/lib/models"]
-    subprocess.run([*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o"],
-                   check=True)
-    subprocess.run([*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
-                    tmp_path / "main"], check=True)
-    shown = subprocess.run([tmp_path / "main", UNKNOWN], check=True, capture_output=True, text=True).stdout
-    longer, shorter = map(int, shown.split())
+    run(*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o")
+    run(*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
+        tmp_path / "main")
+    longer, shorter = map(int, run(tmp_path / "main", UNKNOWN).split())
     assert 1000 < shorter < longer < 3 * shorter, (shorter, longer)
 
 
@@ -353,7 +347,7 @@ def test_readers_are_linear(name: str, tmp_path: Path) -> None:
 
     def read_file(count: int) -> None:
         path.write_text(json.dumps(sample.messages * count), encoding="utf-8")
-        read(path, sample.service)
+        read_service(path, sample.service)
 
     _assert_linear(read_file)
 

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import builtins
-import io
-import json
 import random
-import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -18,15 +15,11 @@ import numpy as np
 import pytest
 
 from labial.__main__ import main
-from labial.commands.common import Limited
 from labial.errors import LabialError
-from labial.fit.sentences import read_sentences
 from labial.rig import table
-from labial.rig.animation import FORMATS
 from labial.rig.description import SOURCES, read
 from labial.rig.table import FAP_MAX, convert, expected
 from labial.runtime.rig import Rig
-from labial.runtime.stream import Frame
 from labial.tables.visemes import VISEMES
 from packages import CC, CXX, SOURCE, needs_runtime, run, warnings
 
@@ -170,89 +163,6 @@ def played(path: Path, frames: np.ndarray, sight: int = 1) -> np.ndarray:
 CLOSING = '[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\n'
 
 
-@needs_runtime
-def test_a_jaw_closes_in_p_b_m(tmp_path: Path) -> None:
-    """In 32 sentences: within 10 us of `closed` where lips touch, whatever the limit of its speed when it looks ahead;
-    with a limit and no sight of what comes most closures would be lost, which is why it looks."""
-    motion = read_sentences(Path(__file__).with_name("sentences.flite"))
-    frames = motion.frames.astype(np.int64)
-
-    def nearest(extra: str, ahead: int) -> np.ndarray:
-        (tmp_path / "face.toml").write_text(CLOSING + extra)
-        values = played(tmp_path / "face.toml", frames, ahead)[:, 0]
-        assert "slew" not in extra or np.abs(np.diff(values)).max() <= 40
-        assert np.percentile(values, 95) >= 1750  # and opens
-        return np.array([values[begin:end].min() - 1400 for begin, end in motion.closures])
-
-    assert len(motion.closures) > 100 and np.mean(nearest("", 1) <= 10) >= 0.98
-    assert np.mean(nearest("slew = 40\n", len(frames)) <= 10) >= 0.98
-    assert np.mean(nearest("slew = 40\n", 10) <= 10) >= 0.9
-    assert np.mean(nearest("slew = 40\n", 1) <= 10) < 0.5
-    others = [span for name, *span in motion.phonemes if name in ("aa", "ae", "ow", "ey")]
-    (tmp_path / "face.toml").write_text(CLOSING)
-    values = played(tmp_path / "face.toml", frames)[:, 0]
-    assert np.mean([values[begin:end].max() >= 1550 for begin, end in others]) >= 0.98  # vowels are left as they are
-
-
-@needs_runtime
-def test_both_directions_are_alike(tmp_path: Path) -> None:
-    """Mirrored motion is mirrored, at any limits and sight; what is asked frame by frame is what is played."""
-    rng = np.random.default_rng(11)
-    for sight in range(1, 15):
-        (tmp_path / "face.toml").write_text(
-            '[output.jaw]\nfrom = "fap3"\nneutral = 1500\nfull = 2000\nreach = 500\nminimum = 1000\nmaximum = 2000\n'
-            f"slew = {rng.integers(5, 90)}\ndeadband = {rng.integers(0, 4)}\n"
-            + (f"acceleration = {rng.integers(1, 40)}\n" if sight % 4 else ""))
-        frames = np.zeros((300, 13), dtype=np.int64)
-        frames[:, 0] = np.cumsum(rng.integers(-60, 61, 300))
-        values = played(tmp_path / "face.toml", frames, sight)
-        assert np.ptp(values) > 100 and np.array_equal(played(tmp_path / "face.toml", -frames, sight), 3000 - values)
-        face = Rig(tmp_path / "face.toml")
-        for place, row in enumerate(values):
-            after = frames[place + 1 : place + sight]
-            assert list(face.apply(frames[place].tolist(), after.ravel().tolist()).values()) == row.tolist()
-
-
-ACCELERATION = "slew = {slew}\nacceleration = {acceleration}\n"
-
-
-@needs_runtime
-def test_a_servo_with_a_limit_of_acceleration_closes_too(tmp_path: Path) -> None:
-    """In 32 sentences: within 10 us of `closed` in p, b, m, and opening, at a common servo's limits with ten frames in
-    sight, at a slow one's with more; limits are kept, and with all in sight nothing goes beyond what is wanted."""
-    motion = read_sentences(Path(__file__).with_name("sentences.flite"))
-    frames = motion.frames.astype(np.int64)
-    (tmp_path / "face.toml").write_text(CLOSING)
-    meant = played(tmp_path / "face.toml", frames)[:, 0]
-    for slew, acceleration, ahead, least, wide in ((90, 30, 10, 0.98, 0.9), (60, 20, 10, 0.98, 0.84),
-                                                   (40, 10, 10, 0.9, 0.74), (40, 10, 32, 0.98, 0.7),
-                                                   (60, 20, 1, 0.2, 0.9)):
-        (tmp_path / "face.toml").write_text(CLOSING + ACCELERATION.format(slew=slew, acceleration=acceleration))
-        values = played(tmp_path / "face.toml", frames, ahead)[:, 0]
-        changes = np.diff(values, prepend=[1400])
-        assert np.abs(changes).max() <= slew and np.abs(np.diff(changes, prepend=[0])).max() <= acceleration
-        assert ahead < 32 or (values - meant).max() <= 0
-        closed = np.mean([values[begin:end].min() <= 1410 for begin, end in motion.closures])
-        assert closed >= least and (ahead > 1 or closed < 0.6), (slew, ahead, closed)
-        assert np.percentile(values, 95) - 1400 >= wide * (np.percentile(meant, 95) - 1400)
-
-
-@needs_runtime
-def test_coming_to_rest_by_hand(tmp_path: Path) -> None:
-    """From 1400 to 1500 and back with changes that differ by 20 at most, worked out on paper."""
-    (tmp_path / "face.toml").write_text('[output.jaw]\nfrom = "fap3"\nneutral = 1400\nfull = 1900\nreach = 500\n'
-                                        "acceleration = 20\n")
-    frames = np.zeros((13, 13), dtype=np.int64)
-    frames[1:9, 0] = 100
-    seeing = [0, 20, 60, 90, 100, 100, 90, 60, 20, 0, 0, 0, 0]  # changes: 20 40 30 10 0 -10 -30 -40 -20 0
-    blind = [0, 20, 60, 90, 100, 100, 100, 100, 100, 80, 40, 10, 0]
-    assert played(tmp_path / "face.toml", frames, 13)[:, 0].tolist() == [1400 + value for value in seeing]
-    assert played(tmp_path / "face.toml", frames, 1)[:, 0].tolist() == [1400 + value for value in blind]
-    face = Rig(tmp_path / "face.toml")  # a stream's frames tell their sounds, too, which no output follows
-    shown = [Frame(k, tuple(faps), (128, *[0] * 14)).rig(face)["jaw"] for k, faps in enumerate(frames.tolist())]
-    assert shown == [1400 + value for value in blind]
-
-
 CURVED = """
 [output.jaw]
 from = "opening"
@@ -302,34 +212,6 @@ def test_generated_curves_are_the_float_rig(tmp_path: Path, seed: int) -> None:
         assert np.abs(column - wanted).max() <= 1.0 + max(slope for _, _, slope in row.curve) / 2**20 / 2
 
 
-@needs_runtime
-def test_a_stream_looks_ahead(tmp_path: Path) -> None:
-    """labial.Rig.ahead() is apply() with the frames that follow, and shows all of them."""
-    (tmp_path / "face.toml").write_text(CLOSING + ACCELERATION.format(slew=60, acceleration=20))
-    frames = np.zeros((30, 13), dtype=np.int64)
-    frames[5:20, 4] = -400
-    expected = played(tmp_path / "face.toml", frames, 9)[:, 0].tolist()
-    face = Rig(tmp_path / "face.toml")
-    assert [values["jaw"] for values in face.ahead(frames.tolist(), 8)] == expected and max(expected) > 1600
-    face.rest()
-    stream = (Frame(k, tuple(row)) for k, row in enumerate(frames.tolist()))
-    assert [values["jaw"] for values in face.ahead(stream, 8)] == expected
-    face.rest()
-    kept = [Frame(k, tuple(row)) for k, row in enumerate(frames.tolist())]
-    assert [face.apply(kept[k], kept[k + 1 : k + 9])["jaw"] for k in range(30)] == expected
-    face.rest()
-    assert [face.apply(frames[k], frames[k + 1 : k + 9])["jaw"] for k in range(30)] == expected
-    with pytest.raises(LabialError, match="a frame has 13 FAPs, not 12"):
-        face.apply(frames[0], frames[1:3, :12])
-    for mixed in ([kept[1], 5], [5, kept[1]]):
-        with pytest.raises(TypeError, match="FAPs are whole numbers"):
-            face.apply(frames[0], mixed)
-    arkit, frame = Rig("arkit"), Frame(0, tuple(frames[10].tolist()))
-    assert arkit.apply(frame) == arkit.apply(frame.faps)
-    with pytest.raises(LabialError, match="looks 0 to 65,534 frames ahead, not -1"):
-        next(face.ahead(frames.tolist(), -1))
-
-
 def test_degrees_are_pulses(tmp_path: Path) -> None:
     """90 degrees between 1000 and 2000 us are 1500; slew, deadband and gain are differences."""
     (tmp_path / "a.toml").write_text('unit = "degrees"\npulses = [1000, 2000]\n[output.jaw]\nfrom = "opening"\n'
@@ -358,35 +240,6 @@ def test_pca9685_counts_in_ticks_of_its_prescaler(tmp_path: Path) -> None:
     # Minimum and maximum are rounded inwards (1500 / 4.88 = 307.4, 2000 / 4.88 = 409.8), and the neutral follows them.
     assert (jaw.neutral, jaw.minimum, jaw.maximum) == (308, 308, 409)
     assert (jaw.slew, jaw.acceleration) == (2, 1)  # the nearest ticks; less than half a tick is refused
-
-
-@needs_runtime
-def test_lines_of_json_keep_the_limits_of_speed(tmp_path: Path) -> None:
-    """`labial synth --to jsonl --rig` moves servos no faster than a baked track does, and closes them in p, b, m; an
-    output that follows sounds has its own limit beside them."""
-    (tmp_path / "a.lab").write_text("0 0.1 SIL\n0.1 0.3 AA\n0.3 0.38 M\n0.38 0.6 AA\n0.6 0.7 TH\n0.7 0.9 AA\n")
-    (tmp_path / "slow.toml").write_text('unit = "quarter_us"\n' + CLOSING
-                                        + ACCELERATION.format(slew=40, acceleration=10)
-                                        + "[output.tongue]\nvisemes = { TH = 300 }\nneutral = 1500\nfull = 1800\n"
-                                          "slew = 20\n")
-    out = tmp_path / "a.jsonl"
-    assert main(["synth", "speech_en", str(tmp_path / "a.lab"), "--to", "jsonl", "--rig", str(tmp_path / "slow.toml"),
-                 "-o", str(out)]) == 0
-    rows = [json.loads(line) for line in out.read_text().splitlines()]
-    jaw, tongue = (np.array([row["slow"][name] for row in rows]) for name in ("jaw", "tongue"))
-    faps = np.rint([list(row["faps"].values()) for row in rows]).astype(np.int64)
-    assert np.abs(np.diff(jaw, prepend=[1400])).max() <= 40 and jaw.max() > 1500
-    assert np.abs(np.diff(jaw, 2, prepend=[1400, 1400])).max() <= 10
-    assert jaw[15:20].min() <= 1402
-    assert np.abs(jaw - played(tmp_path / "slow.toml", faps, len(faps))[:, 0] / 4).max() <= 4  # faps are rounded
-    assert np.abs(np.diff(tongue)).max() == 20 and tongue.max() > 1540
-    slow = read(tmp_path / "slow.toml", "slow")
-    form = FORMATS["jsonl"].of_rig(slow, Limited(slow))
-    for parts in ([faps], [faps[:12], faps[12:12], faps[12:]]):  # a motion that comes in parts goes on; each is new
-        text = io.StringIO()
-        form.write(text, parts, 50, "slow", len(faps))
-        moves = np.array([json.loads(line)["slow"]["jaw"] for line in text.getvalue().splitlines()])
-        assert moves[0] == 1400 and np.abs(np.diff(moves, 2)).max() <= 10 and moves.max() > 1450
 
 
 #: What the host's stubs of Arduino do, for sketches that do not use the library.
@@ -450,7 +303,7 @@ def test_without_matplotlib_the_way_out_is_named(
 ) -> None:
     """The tables need no drawing."""
     real = builtins.__import__
-    monkeypatch.delitem(sys.modules, "labial.see.drawing", raising=False)  # which other tests may have imported
+    monkeypatch.delitem(sys.modules, "labial.see.plot", raising=False)  # which other tests may have imported
 
     def refuse(name: str, *rest: object, **named: object) -> object:
         if name.split(".")[0] == "matplotlib":
@@ -476,34 +329,25 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ("", "output: at least one table [output.NAME] is needed"),
         ("\ufeff" + JAW, None),
         ("output = 3", "output: at least one table"),
-        ("[output]", "output: at least one table"),
         ("[output]\njaw = 3", "output.jaw: is not a table"),
         ("[output.jaw\n", ":1: not TOML: "),
         (JAW + "slew = = 2\n", ":5: not TOML: "),
-        (JAW + "neutral = 2\n", "not TOML: "),
         ("outputs = 3\n" + JAW, "outputs: unknown key; did you mean output?"),
         ("colour = 3\n" + JAW, "colour: unknown key; known are unit,"),
         (JAW + "neutrall = 2\n", "output.jaw.neutrall: unknown key; did you mean neutral?"),
         ('unit = "radians"\n' + JAW, "unit: 'radians' is none of us, quarter_us, pca9685, counts, weight, plain, degr"),
         (DEGREES + JAW, "output.jaw.neutral: 1400 is not within -13.96 .. 199.39 degrees, a servo's 400 .. 2600 micro"),
         (IN_DEGREES, None),
-        (IN_DEGREES.replace("100", "200"), "output.jaw.full: 200 is not within -13.96 .. 199.39 degrees"),
-        (IN_DEGREES + "slew = -3\n", "output.jaw.slew: -3 is not positive"),
         (IN_DEGREES + "slew = 0.04\n", "output.jaw.slew: 0.04 is less than half a step of its values, microseconds"),
         (IN_DEGREES + "minimum = 70\n", "output.jaw.closed: 60 is not within 70 .. 100"),
-        (IN_DEGREES + "minimum = 70\nmaximum = 50\n", "output.jaw.minimum: 70 is above the maximum, 50"),
-        (IN_DEGREES + "deadband = 41\n", "output.jaw.deadband: 41 is more than the travel from 60 to 100: the output"),
-        (IN_DEGREES + "curve = [[65, 0], [100, 9]]\n", "output.jaw.curve: closed, 60, is not within 65 .. 100"),
         (IN_DEGREES + "curve = [[60, 0], [201, 9]]\n", "output.jaw.curve: 201 is not within -13.96 .. 199.39 degrees"),
         (IN_DEGREES + "curve = [[60, 0], [60.02, 9], [100, 9.1]]\n", "between 60.02 and 100 the output would move"),
         (IN_DEGREES + "curve = [[60, 0], [60.1, 1e-2], [100, 9]]\n", "the points at 60 and 60.1 are too near"),
         ('unit = "degrees"\npulses = [1000]\n' + JAW, "pulses: is two pulses in microseconds"),
         ('unit = "degrees"\npulses = [2000, 1000]\n' + JAW, "pulses: 2000, 1000 are not two pulses"),
         ("pulses = [1000, 2000]\n" + JAW, "pulses: goes with the unit degrees"),
-        ("unit = 50\n" + JAW, "unit: 50 is none of"),
         ("unit = []\n" + JAW, "unit: [] is none of"),
         ("frequency = 50\n" + JAW, "frequency: has no meaning for the unit us"),
-        ('unit = "pca9685"\nfrequency = 5\n' + JAW, "frequency: 5 is not within 23.85 .. 1525.87 Hz"),
         ('unit = "pca9685"\nfrequency = 23.84\n' + JAW, "frequency: 23.84 is not within 23.85 .. 1525.87 Hz"),
         ('unit = "pca9685"\nfrequency = 23.85\n' + JAW, None),
         ('unit = "pca9685"\nfrequency = 1526\n' + JAW, "frequency: 1526 is not within 23.85 .. 1525.87 Hz"),
@@ -511,7 +355,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ('unit = "pca9685"\n' + JAW + "slew = 2\n", "output.jaw.slew: 2 is less than half a step of its values, ticks"),
         ('unit = "pca9685"\n' + JAW + "acceleration = 2\n", "output.jaw.acceleration: 2 is less than half a step"),
         ('unit = "pca9685"\nfrequency = "x"\n' + JAW, "frequency: 'x' is not a number"),
-        ('unit = "pca9685"\nfrequency = 1000\n' + JAW, "output.jaw.neutral: 5833 ticks of 0.24 us"),
         ('unit = "counts"\n' + JAW, "clock: is missing"),
         ('unit = "counts"\nclock = 5\n' + JAW, "clock: 5 is not within"),
         ('unit = "counts"\nclock = 1e9\n' + JAW.replace("1900", "1900.0"), None),
@@ -519,7 +362,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + JAW.replace("jaw", "Jaw"), "output.Jaw: is the same in capitals as output.jaw"),
         (JAW.replace("[output.jaw]", "[output.outputs]"), "output.outputs: this name is taken"),
         (JAW.replace('"opening"', '"openning"'), "no gesture or FAP is called 'openning'; did you mean opening?"),
-        (JAW.replace('"opening"', "7"), "output.jaw.from: is the name of a gesture"),
         (JAW.replace('"opening"', "{}"), "output.jaw.from: is the name of a gesture"),
         (JAW.replace('from = "opening"\n', ""), "output.jaw.from: is the name of a gesture"),
         (JAW.replace('"opening"', "{ jaw = true }"), "output.jaw.from.jaw: True is not a number"),
@@ -529,7 +371,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace('"opening"', '"fap16"'), "output.jaw.reach: is missing"),
         (JAW + "closed = 1399\n", None),
         (GAIN + "closed = 900\n", "output.jaw.closed: 900 is not within 1000 .. 2000"),
-        (JAW + "closed = 90\n", "output.jaw.closed: 90 is not a servo's pulse"),
         (JAW.replace("neutral", "closed").replace("1400", "90"), "output.jaw.closed: 90 is not a servo's pulse"),
         (JAW.replace("neutral", "closed").replace("1900", "1400"), "output.jaw.full: is the same as closed"),
         (JAW.replace("neutral", "closed") + "curve = [[1500, 0], [1900, 9]]\n", "jaw.curve: closed, 1400, is not"),
@@ -552,25 +393,21 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "gain = 2\n", "FAP unit) is needed, not both"),
         (JAW + "invert = true\n", "output.jaw.invert: goes with gain"),
         (JAW + "invert = 1\n", "output.jaw.invert: 1 is neither true nor false"),
-        (JAW + "slew = -1\n", "output.jaw.slew: -1 is not positive"),
         (JAW + "slew = 0\n", "output.jaw.slew: 0 is not positive; leave it out for no limit"),
         (JAW + "acceleration = -1\n", "output.jaw.acceleration: -1 is not positive"),
         (JAW + "acceleration = 1e8\n", "output.jaw.acceleration: 100000000 microseconds is beyond 16777215"),
-        (JAW + "acceleration = inf\n", "output.jaw.acceleration: inf is not a finite number"),
         (JAW + "curve = 3\n", "output.jaw.curve: is a list of 2 to 9 points [VALUE, OPENING]"),
         (JAW + "curve = [[1400, 0]]\n", "output.jaw.curve: is a list of 2 to 9 points"),
         (JAW + "curve = [" + "[1400, 0]," * 10 + "]\n", "output.jaw.curve: is a list of 2 to 9 points"),
         (JAW + "curve = [[1400, 0], 1900]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
         (JAW + "curve = [[1400, 0], [1900]]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
         (JAW + 'curve = [[1400, 0], [1900, "x"]]\n', "output.jaw.curve: 'x' is not a number"),
-        (JAW + "curve = [[1400, 0], [1900, nan]]\n", "output.jaw.curve: nan is not a finite number"),
         (JAW + "curve = [[140, 0], [1900, 9]]\n", "output.jaw.curve: 140 is not a servo's pulse, 400 .. 2600"),
         (JAW + "curve = [[1400, 0], [1600, 9], [1900, 8]]\n", "output.jaw.curve: from each value to the next larger"),
         (JAW + "curve = [[1400, 0], [1400, 9], [1900, 12]]\n", "output.jaw.curve: from each value to the next larger"),
         (JAW + "curve = [[1500, 0], [1900, 9]]\n", "output.jaw.curve: neutral, 1400, is not within 1500 .. 1900"),
         (JAW + "curve = [[1400, 0], [1800, 9]]\n", "output.jaw.curve: full, 1900, is not within 1400 .. 1800"),
         (JAW + "curve = [[1400, 0], [1700, 0.1], [1900, 90]]\n", "the output would move 540 times as far as evenly"),
-        (JAW + "curve = [[1400, 0], [1410, 1e-3], [1900, 9]]\n", "the output would move 180 times as far as evenly"),
         (JAW + "curve = [[1401, 1], [1402, 2], [1400, 0], [1900, 9]]\n", None),
         (GAIN + "curve = [[1400, 0], [1900, 9]]\n", "output.jaw.curve: goes with full, not with gain"),
         (PLAIN + JAW + "curve = [[0, 0], [2e7, 2e7], [3e7, 4e7]]\n", "output.jaw.curve: what lies at 2e+07 is beyond"),
@@ -579,7 +416,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace('from = "opening"', "visemes = { TH = 100 }"), None),
         (JAW + "visemes = 3\n", "output.jaw.visemes: is a table { VISEME = AMOUNT, ... }"),
         (JAW + "visemes = { Th = 3 }\n", "output.jaw.visemes: no viseme is called 'Th'"),
-        (JAW + 'visemes = { TH = "x" }\n', "output.jaw.visemes.TH: 'x' is not a number"),
         (JAW + "visemes = { TH = 4e4 }\n", "output.jaw.visemes.TH: 40000 microseconds is beyond 32767"),
         (JAW.replace('from = "opening"', "reach = 3\nvisemes = { TH = 100 }"), "output.jaw.reach: goes with from"),
         (GAIN.replace('from = "opening"', "visemes = { TH = 100 }"), "output.jaw.gain: goes with from"),
@@ -592,14 +428,15 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (PLAIN + JAW.replace("1900", "1e7"), "output.jaw.full: gain and weights are too large"),
         (PLAIN + JAW.replace("1900", "1e9"), "output.jaw.maximum: 1000000000 plain units is beyond 16777215"),
         (PLAIN + JAW.replace("1400", "0.2").replace("1900", "0.8"), "output.jaw.minimum: no whole unit lies between"),
+        (b"\xff\xfe", "not UTF-8 text"), (b"x = " + b"[" * 5000, "not TOML"),
     ],
 )
 def test_errors_name_file_and_key(
-    tmp_path: Path, capsys: pytest.CaptureFixture, text: str, message: str
+    tmp_path: Path, capsys: pytest.CaptureFixture, text: str | bytes, message: str
 ) -> None:
     """One line, no traceback, nothing written; a case without message is one that must pass."""
     path = tmp_path / "face.toml"
-    path.write_text(text, encoding="utf-8")
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
     status = main(["rig", str(path), "-o", str(tmp_path / "out"), "--no-figure"])
     error = capsys.readouterr().err
     if message is None:
@@ -607,16 +444,6 @@ def test_errors_name_file_and_key(
         return
     assert status == 1 and error.startswith(f"labial: {path}:") and message in error and error.count("\n") == 1, error
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(("content", "message"), [(b"\xff\xfe", "not UTF-8 text"), (b"x = " + b"[" * 5000, "not TOML")])
-def test_what_is_no_text_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture, content: bytes, message: str
-) -> None:
-    """Binary files and nesting without end."""
-    (tmp_path / "face.toml").write_bytes(content)
-    assert main(["rig", str(tmp_path / "face.toml"), "-o", str(tmp_path), "--no-figure"]) == 1
-    assert re.search(rf"face\.toml:(\d+:)? {message}", capsys.readouterr().err)
 
 
 def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -27,6 +27,7 @@ from labial.hearing.model import load
 from labial.hearing.quantise import HearingTables, quantise
 from labial.runtime.hearing import models
 from labial.tables.visemes import VISEME_OF, VISEMES
+from models import write_wav
 from packages import SOURCE, needs_runtime
 from test_hearing import voice
 
@@ -279,16 +280,6 @@ def test_models_are_those_of_the_exporter() -> None:
 
 
 # ---- The command -----------------------------------------------------------------------------------------------------
-
-
-def write_wav(path: Path, sound: np.ndarray, rate: int = 16000, width: int = 2) -> Path:
-    """A WAV file of samples (N,) or (N, channels)."""
-    with wave.open(str(path), "wb") as file:
-        file.setnchannels(1 if sound.ndim == 1 else sound.shape[1])
-        file.setsampwidth(width)
-        file.setframerate(rate)
-        file.writeframes(sound.astype({1: "u1", 2: "<i2"}[width]).tobytes())
-    return path
 
 
 def rows(text: str) -> np.ndarray:

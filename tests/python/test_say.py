@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import queue
-import random
 import subprocess
 import threading
 from itertools import accumulate
@@ -24,7 +23,7 @@ from labial.see.motion import read_bands
 from models import lab
 from packages import SOURCE, needs_runtime
 from test_hearing import voice
-from test_timings import FILES, PHRASE, SEEDS, SENTENCE, damaged
+from test_timings import PHRASE, SEEDS, SENTENCE
 
 HEADER = "time,fap3,fap16,fap17,fap51,fap52,fap53,fap54,fap55,fap56,fap57,fap58,fap59,fap60"
 FORMATS = {".psdur": "flite", ".pho": "pho", ".realised_durations": "mary", ".phseg": "phseg", ".TextGrid": "textgrid"}
@@ -75,19 +74,12 @@ def test_one_sentence_in_every_format(name: str) -> None:
     assert motion(data, "--from", named) == expected
 
 
-@pytest.mark.parametrize("name", SENTENCE)
-def test_line_ends_and_byte_order_marks(name: str) -> None:
-    """Catches carriage returns, a missing last line feed or a mark of the encoding that change the motion."""
-    data = (SEEDS / name).read_bytes()
-    if name.startswith("utf16"):
-        text = data.decode("utf-16")
-        assert motion(text) == motion(text.encode("utf-16-le").join([b"\xff\xfe", b""])) == motion(data)
-        return
-    text = data.decode()
-    assert motion(text.replace("\n", "\r\n")) == motion(text)
-    assert motion(text.rstrip()) == motion(text)
-    assert motion(b"\xef\xbb\xbf" + data) == motion(text)
-    assert motion(text.encode("utf-16")) == motion(text)
+@pytest.mark.parametrize("name", ["sentence.pho", "aligned.TextGrid"])
+def test_utf_16_is_read(name: str) -> None:
+    """Catches half a character that is lost; tests/grammar has line ends and the mark of UTF-8."""
+    text = (SEEDS / name).read_text(encoding="utf-8")
+    for encoding in ("utf-16-le", "utf-16-be"):
+        assert motion(f"\ufeff{text}".encode(encoding)) == motion(text)
 
 
 def test_a_tier_is_taken_by_name() -> None:
@@ -131,23 +123,19 @@ def test_times_of_frames() -> None:
 
 
 @pytest.mark.parametrize(("text", "line", "told"), [
-    ("pau:0.2 m:x\n", 1, "m:x"), ("0.0 0.2 sil\n\n0.4 0.3 b\n", 3, "0.4"), ("0.0 0.2 sil\n0.2 0.3\n", 2, "2 fields"),
-    ("pau:0.2 m:5000.0\n", 1, "hour"), ("_ 100\nb 3600001\n", 2, "hour"), ("pau:0.1 <laugh 4000>\n", 1, "hour"),
-    ("hello world\n", 1, "flite"), ("_ 100\nb\x1b[31m 20\n", 2, "0x1b"),
+    ("0.0 0.2 sil\n\n0.4 0.3 b\n", 3, "0.4"), ("_ 100\nb 3600001\n", 2, "hour"),
+    ("pau:0.1 <laugh 4000>\n", 1, "hour"), ("_ 100\nb\x1b[31m 20\n", 2, "0x1b"),
 ])  # fmt: skip
 def test_malformed_lines_are_named(text: str, line: int, told: str) -> None:
-    """An error says the line and what is wrong with it, and the exit status is 1."""
-    done = say(text)
+    """An error says the line and what is wrong with it, the exit status is 1, and no part of a file is written."""
+    done = say(text, "--to", "fap")
     message = done.stderr.decode()
-    assert done.returncode == 1
+    assert done.returncode == 1 and done.stdout == b""
     assert message.startswith(f"labial-say: line {line}: ") and message.count("\n") == 1
     assert told in message
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [("pau:0.1 xyzzy:0.2\n", 1), ("_ 9\nxyzzy 9\n", 2), ("pau:0.1\nxyzzy:0.2\n", 2)]
-)
+@pytest.mark.parametrize(("text", "line"), [("pau:0.1 xyzzy:0.2\n", 1), ("_ 9\nxyzzy 9\n", 2)])
 def test_unknown_labels_are_named_once(text: str, line: int) -> None:
     """A label that the model does not know moves as the nearest, and is named in one warning, whatever the format."""
     done = say(text + text)
@@ -157,36 +145,21 @@ def test_unknown_labels_are_named_once(text: str, line: int) -> None:
     assert done.stdout == say((text + text).replace("xyzzy", "k")).stdout
 
 
-@pytest.mark.parametrize(("text", "line", "seconds"), [
-    ("0 12 sil\n12 30 b\n30 50 aa\n", 2, 18), ("_ 90000\nb 10001\nb 10001\n", 2, 10),
-    ("pau:12.0 b:22.0\n", 0, 0),
-])  # fmt: skip
-def test_times_of_another_unit_are_asked_about(text: str, line: int, seconds: int) -> None:
-    """The first sound that is too long to be speech is named; not a silence, nor a sound of just ten seconds."""
-    done = say(text)
-    assert done.returncode == 0 and done.stderr.decode() == (
-        f"labial-say: warning: line {line}: 'b' lasts {seconds} s: is the unit of time right?\n" if line else "")
+SHORT = "every sound is shorter than 5 ms"
 
 
 @pytest.mark.parametrize(("text", "asked"), [
-    ("_ 90\nm .08\n", True), ("_ 90\nm 4\na 4.4\n", True), ("m 4\na 5\n", False), ("_ 4\n", False),
-    ("<laugh:1> 2\n", False),
+    ("0 12 sil\n12 30 b\n30 50 aa\n", "line 2: 'b' lasts 18 s"),
+    ("_ 90000\nb 10001\nb 10001\n", "line 2: 'b' lasts 10 s"),
+    ("pau:12.0 b:22.0\n", ""), ("_ 90\nm .08\n", SHORT), ("_ 90\nm 4\na 4.4\n", SHORT), ("m 4\na 5\n", ""),
+    ("_ 4\n", ""), ("<laugh:1> 2\n", ""),
 ])  # fmt: skip
-def test_times_that_are_too_short_are_asked_about(text: str, asked: bool) -> None:
-    """Where every sound is; not of silences and laughs."""
+def test_times_of_another_unit_are_asked_about(text: str, asked: str) -> None:
+    """The first sound that is too long to be speech is named, or that every sound is too short; not of silences and
+    laughs, nor of a sound of just ten seconds."""
     done = say(text)
-    assert done.returncode == 0 and done.stderr.decode() == (
-        "labial-say: warning: every sound is shorter than 5 ms: is the unit of time right?\n" if asked else "")
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_damaged_files_are_motion_or_an_error(name: str) -> None:
-    """Bytes that are no text, or hardly any, end in motion or an error with its line, not in a crash."""
-    chance = random.Random(name)
-    for number in range(8):
-        done = say(damaged(FILES[name], chance) if number else bytes(chance.choices(range(256), k=4096)))
-        assert done.returncode in ((0, 1) if number else (1,))
-        assert not done.returncode or done.stderr.splitlines()[-1].startswith(b"labial-say: line ")
+    assert done.returncode == 0
+    assert done.stderr.decode() == (f"labial-say: warning: {asked}: is the unit of time right?\n" if asked else "")
 
 
 @pytest.mark.parametrize("text", ["", "\n", " \r\n\n", "; nothing\n"])
@@ -202,12 +175,6 @@ def test_articulation_is_the_streams() -> None:
     plain, half, still = ([int(value) for row in motion(TEXT, "--articulation", percent)
                            for value in [*row[1:3], *row[4:]]] for percent in ("100", "50", "0"))
     assert max(plain) > 200 and all(abs(a - b / 2) <= 1 for a, b in zip(half, plain)) and not any(still)
-
-
-def test_fap_of_malformed_input_is_not_written() -> None:
-    """A fap file that would hold a part of the motion under a header of its own is not written at all."""
-    done = say("pau:0.5 m:0.6 b:x\n", "--to", "fap")
-    assert done.returncode == 1 and done.stdout == b""
 
 
 def test_laughter() -> None:
@@ -247,12 +214,9 @@ def openings(values: List[int]) -> int:
 
 
 @pytest.mark.parametrize(("text", "start"), [
-    ("pau:0.200 <laugh 2.0 0.7> m:0.300 ay:0.500\n", 0.2), ("pau:0.200 <laugh:0.7>:2.200 m:2.300 ay:2.500\n", 0.2),
     ("<laugh 2.0>\npau:0.200 m:0.300 ay:0.500\n", 0.0), ("_ 200\n<laugh:0.7> 2000\nm 100\nAI 200\n", 0.2),
-    ("0.0 0.2 sil\n<laugh 2.0 0.7>\n0.2 0.3 m\n0.3 0.5 ay\n", 0.2),
-    ("0.0 0.2 sil\n0.2 2.2 <laugh:0.7>\n2.2 2.3 m\n2.3 2.5 ay\n", 0.2),
 ])  # fmt: skip
-def test_laughs_in_every_stream(text: str, start: float) -> None:
+def test_laughs_take_their_time(text: str, start: float) -> None:
     """Catches a laugh that is not one, takes another time than its two seconds, or does not shift what follows."""
     rows = motion(text)
     assert len(rows) == 50 * 2.5 + 12 and rows[: len(rows) - 12] == motion(text, "--exact")

@@ -14,8 +14,7 @@ import pytest
 
 import labial
 from labial.__main__ import main
-from labial.corpus.formats import as_lab, read_timings
-from labial.corpus.service_files import LAST_VISEME, _phonemes_of
+from labial.corpus.formats import LAST_VISEME, _phonemes_of, as_lab, read_timings
 from labial.corpus.services import SERVICES
 from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError
@@ -207,8 +206,31 @@ CHUNK = {"sample_rate": 100, "phoneme_alignments": [{"phoneme": "m", "num_sample
     ("headtts", {"phonemes": ["m"], "vtimes": [0, 1], "vdurations": [5]}, None, "one length"),
     ("headtts", {"phonemes": [1], "vtimes": [0], "vdurations": [5]}, None, "not text"),
     ("kokoro", {"phonemes": "ma", "pred_dur": [1, 2, 3]}, None, "not of one length"),
+    *((None, text, None, "") for text in ("[]", "{}", '{"phonemes": []}', "[[]]")),
+    ("words", [{"word": "a", "start": 1, "end": 2}, {"word": "b", "start": 0, "end": 1}], None,
+     "'b' begins before 'a'"),
+    ("words", [{"word": "a", "start": 2, "end": 1}], None, "before its start"),
+    ("words", [{"word": "a", "start": "0", "end": 1}], None, "entry 1: 'start' is 0, not a number"),
+    ("words", [{"word": 1, "start": 0, "end": 1}], None, "entry 1: 'word' is 1, not text"),
+    ("words", [{"word": "a", "start": 0, "end": 1e9}], None, "more than a day"),
+    ("words", [{"word": "a", "start": 0, "end": 1e307}], None, "more than a day"),
+    ("words", [{"word": "a", "start": 0}], None, "entry 1: no field 'end'"),
+    ("words", [], None, "times nothing here"),
+    ("cartesia", [{"type": "done", "context_id": "c"}], None, "times nothing here"),
+    ("cartesia", [{"word_timestamps": {"words": ["a"], "start": [0, 1], "end": [1]}}], None, "are not of one length"),
+    ("cartesia", [{"word_timestamps": {"words": [1], "start": [0], "end": [1]}}], None, "is 1, not text"),
+    ("cartesia", [{"word_timestamps": 7}], None, "7 is not an object"),
+    ("elevenlabs", {"alignment": {"characters": ["a"], "character_start_times_seconds": [0]}}, None, "no field"),
+    ("minimax", [{"text": "a", "timestamped_words": None}], None, "subtitle_type word"),
+    ("hume", {"snippet_id": "a", "timestamp": {"text": "a", "type": "word", "time": 1}}, None,
+     "no field 'time.begin'"),
+    ("google", {"timepoints": 1}, None, "1 is not an object"),
+    ("inworld", {"timestampInfo": {}}, None, "times nothing here"),
+    ("fish", [{"chunk_seq": 1, "alignment": {"segments": [{"text": "go", "start": 0, "end": 0.3}]}},
+              {"chunk_seq": 1, "alignment": {"segments": []}}], None, "times nothing here"),
+    ("polly", [{"type": ["word"], "value": "a", "time": 1}], None, "--speech-mark-types"),
 ])  # fmt: skip
-def test_malformed_files(tmp_path: Path, source: str, content: Any, line: Any, words: str) -> None:
+def test_malformed_files(tmp_path: Path, source: Any, content: Any, line: Any, words: str) -> None:
     """One line that names the file, the line where there is one, and what is wrong."""
     path = put(tmp_path, content)
     with pytest.raises(DataError) as caught:
@@ -239,42 +261,6 @@ def test_malformed_files(tmp_path: Path, source: str, content: Any, line: Any, w
 def test_other_forms_of_messages(tmp_path: Path, source: str, content: Any) -> None:
     found = phonemes(put(tmp_path, content), source)
     assert [label for _, _, label in found] == ["G", "OW"] and found[-1][1] == 0.3
-
-
-@pytest.mark.parametrize("source, content, problem", [
-    ("words", [{"word": "a", "start": 1, "end": 2}, {"word": "b", "start": 0, "end": 1}], "'b' begins before 'a'"),
-    ("words", [{"word": "a", "start": 2, "end": 1}], "before its start"),
-    ("words", [{"word": "a", "start": "0", "end": 1}], "entry 1: 'start' is 0, not a number"),
-    ("words", [{"word": 1, "start": 0, "end": 1}], "entry 1: 'word' is 1, not text"),
-    ("words", [{"word": "a", "start": 0, "end": 1e9}], "more than a day"),
-    ("words", [{"word": "a", "start": 0, "end": 1e307}], "more than a day"),
-    ("words", [{"word": "a", "start": 0}], "entry 1: no field 'end'"),
-    ("words", [], "times nothing here"),
-    ("cartesia", [{"type": "done", "context_id": "c"}], "times nothing here"),
-    ("cartesia", [{"word_timestamps": {"words": ["a"], "start": [0, 1], "end": [1]}}], "are not of one length"),
-    ("cartesia", [{"word_timestamps": {"words": [1], "start": [0], "end": [1]}}], "is 1, not text"),
-    ("cartesia", [{"word_timestamps": 7}], "7 is not an object"),
-    ("elevenlabs", {"alignment": {"characters": ["a"], "character_start_times_seconds": [0]}}, "no field"),
-    ("minimax", [{"text": "a", "timestamped_words": None}], "subtitle_type word"),
-    ("hume", {"snippet_id": "a", "timestamp": {"text": "a", "type": "word", "time": 1}}, "no field 'time.begin'"),
-    ("google", {"timepoints": 1}, "1 is not an object"),
-    ("inworld", {"timestampInfo": {}}, "times nothing here"),
-    ("fish", [{"chunk_seq": 1, "alignment": {"segments": [{"text": "go", "start": 0, "end": 0.3}]}},
-              {"chunk_seq": 1, "alignment": {"segments": []}}], "times nothing here"),
-    ("polly", [{"type": ["word"], "value": "a", "time": 1}], "--speech-mark-types"),
-])  # fmt: skip
-def test_malformed_words(tmp_path: Path, source: str, content: Any, problem: str) -> None:
-    """One line that names the file and says what is wrong."""
-    path = put(tmp_path, content)
-    with pytest.raises(DataError) as caught:
-        phonemes(path, source)
-    assert problem in str(caught.value) and str(caught.value).startswith(str(path)) and "\n" not in str(caught.value)
-
-
-def test_other_json_is_no_timings(tmp_path: Path) -> None:
-    for content in ("[]", "{}", '{"phonemes": []}', "[[]]"):
-        with pytest.raises(DataError):
-            read_timings(put(tmp_path, content))
 
 
 def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -1,9 +1,11 @@
 """Lip shape mixtures: scaling, back-off, the regression of shapes on durations; context-aware ones, whose EM climbs and
-finds a planted dependence; closures and amplitude, which keep averaged lips from mumbling."""
+finds a planted dependence; closures and amplitude, which keep averaged lips from mumbling. Temporal kernels: against
+the two-part regression they stand for, and on planted kernels."""
 
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,30 +16,23 @@ from sklearn.mixture import GaussianMixture
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
-from labial.reference.shape import choose, shapes
+from labial.reference.shape import Choice, add_kernels, choose, knot_shares, neighbours, shapes
 from labial.reference.stream import synthesise, targets
 from labial.reference.tables import FloatTables
 from labial.tables.model import mean_pose, widened
+from labial.train import shapes as mixing
 from labial.train.expression import AMPLITUDE, floors, gains
-from labial.train.recordings import Recording
-from labial.train.shapes import (
-    DURATION,
-    LOG_FLOOR,
-    MINIMUM_SAMPLES,
-    REGULARISATION,
-    SAMPLES_PER_COMPONENT,
-    Samples,
-    back_off,
-    climb,
-    component_limit,
-    corpus_scale,
-    fit_context,
-    fit_mixture,
-    log_joint,
-    log_normal,
-    maximise,
-    shape_tables,
+from labial.train.kernels import (
+    PAIR_COUNT,
+    Kernels,
+    Penalties,
+    fit_kernels,
+    lags,
+    pair_codes,
+    regression,
+    tapped,
 )
+from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, without_floors
 
@@ -53,17 +48,18 @@ def two_clusters(rng: np.random.Generator, count: int) -> np.ndarray:
 def test_density_equals_scikit_learns():
     # Catches a mean or covariance that is not scaled back to FAP and seconds, or scaled twice.
     vectors = two_clusters(np.random.default_rng(1), 200)
-    scale = corpus_scale(vectors)
-    mixture = fit_mixture(vectors, scale, 3, seed=4)
-    oracle = GaussianMixture(3, reg_covar=REGULARISATION, max_iter=200, random_state=4).fit(vectors / scale)
-    ours = logsumexp(np.log(mixture.weight) + log_normal(vectors, mixture.mean, mixture.covariance), axis=1)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_mixture(vectors, scale, 3, seed=4)
+    oracle = GaussianMixture(3, reg_covar=mixing.REGULARISATION, max_iter=200, random_state=4).fit(vectors / scale)
+    ours = logsumexp(np.log(mixture.weight) + mixing.log_normal(vectors, mixture.mean, mixture.covariance), axis=1)
     np.testing.assert_allclose(ours, oracle.score_samples(vectors / scale) - np.log(scale).sum(), rtol=1e-9)
 
 
 def test_equation_2_selects_by_duration():
     # Catches a selection that ignores the duration or mixes shapes up.
     vectors = two_clusters(np.random.default_rng(2), 300)
-    tables = shape_tables([fit_mixture(vectors, corpus_scale(vectors), 2, seed=0)], conditional=False)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 2, seed=0)
+    tables = mixing.shape_tables([mixture], conditional=False)
     zero = np.zeros(2, dtype=np.int64)
     selected = shapes(tables, choose(tables, zero, np.array([0.06, 0.20]), zero, zero, soft=False))
     np.testing.assert_allclose(selected[0], np.linspace(150, -300, 13), atol=8)
@@ -76,23 +72,23 @@ def test_slope_recovers_a_linear_law():
     duration = rng.normal(0.12, 0.03, 4000)
     law = np.linspace(-900, 900, 13)  # FAP per second
     vectors = np.column_stack([40 + law * duration[:, None] + rng.normal(0, 10, (4000, 13)), duration])
-    mixture = fit_mixture(vectors, corpus_scale(vectors), 1, seed=0)
-    tables = shape_tables([mixture], conditional=True)
-    np.testing.assert_allclose(tables.slope[0], law / (1 + REGULARISATION), atol=25)
-    published = shape_tables([mixture], conditional=False)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 1, seed=0)
+    tables = mixing.shape_tables([mixture], conditional=True)
+    np.testing.assert_allclose(tables.slope[0], law / (1 + mixing.REGULARISATION), atol=25)
+    published = mixing.shape_tables([mixture], conditional=False)
     assert not published.slope.any()
 
 
 def test_few_samples_get_few_components():
     # Catches a mixture with more components than samples can tell apart, or none at all.
-    assert component_limit(5 * SAMPLES_PER_COMPONENT, 5) == 5
-    assert component_limit(2 * SAMPLES_PER_COMPONENT - 1, 5) == 1
-    assert component_limit(1, 5) == 1
-    vectors = two_clusters(np.random.default_rng(5), MINIMUM_SAMPLES)
-    mixture = fit_mixture(vectors, corpus_scale(vectors), 5, seed=0)
+    assert mixing.component_limit(5 * mixing.SAMPLES_PER_COMPONENT, 5) == 5
+    assert mixing.component_limit(2 * mixing.SAMPLES_PER_COMPONENT - 1, 5) == 1
+    assert mixing.component_limit(1, 5) == 1
+    vectors = two_clusters(np.random.default_rng(5), mixing.MINIMUM_SAMPLES)
+    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 5, seed=0)
     assert len(mixture.weight) == 1 and np.linalg.eigvalsh(mixture.covariance[0]).min() > 0
     same = np.repeat(vectors[:1], 40, axis=0)  # repeated vectors have no spread
-    assert np.linalg.eigvalsh(fit_mixture(same, corpus_scale(vectors), 2, seed=0).covariance).min() > 0
+    assert np.linalg.eigvalsh(mixing.fit_mixture(same, mixing.corpus_scale(vectors), 2, seed=0).covariance).min() > 0
 
 
 def test_back_off_from_class_to_substitute():
@@ -101,7 +97,7 @@ def test_back_off_from_class_to_substitute():
     counts = np.zeros(len(labels), dtype=np.int64)
     for label, count in {"SIL": 50, "P": 40, "B": 3, "AA": 30, "T": 12}.items():
         counts[labels.index(label)] = count
-    plan = back_off(counts, SPEECH)
+    plan = mixing.back_off(counts, SPEECH)
     assert plan.members[labels.index("P")] == (labels.index("P"),)
     assert set(plan.members[labels.index("B")]) == {labels.index("P"), labels.index("B")}
     assert plan.pooled["B"] == plan.pooled["M"] == "bilabial"
@@ -118,7 +114,7 @@ def test_a_small_corpus_closes_no_vowel():
     counts = np.zeros(len(labels), dtype=np.int64)
     for label, count in {"SIL": 12, "B": 13, "AH": 2, "EH": 8, "T": 7, "N": 4, "AA": 3, "IY": 5, "F": 4}.items():
         counts[labels.index(label)] = count
-    plan = back_off(counts, SPEECH)
+    plan = mixing.back_off(counts, SPEECH)
     assert {plan.substitutes[label] for label in ("AA", "AE", "IY", "UW", "OW", "ER", "HH")} == {"AH", "EH"}
     assert {plan.substitutes[label] for label in ("K", "G", "S", "R", "CH")} == {"T", "N"}
     assert not {"P", "B", "M", "F", "V"} & set(plan.substitutes.values())
@@ -127,7 +123,7 @@ def test_a_small_corpus_closes_no_vowel():
 def test_an_empty_corpus_is_refused():
     # Catches an error from deep inside a library instead of one that says what is wrong.
     with pytest.raises(LabialError, match="samples"):
-        back_off(np.zeros(len(SPEECH.phonemes), dtype=np.int64), SPEECH)
+        mixing.back_off(np.zeros(len(SPEECH.phonemes), dtype=np.int64), SPEECH)
 
 
 CLASSES = 6
@@ -144,9 +140,9 @@ def test_joint_is_the_product_of_its_parts():
     # Catches a term that is left out or looked up in the wrong table.
     rng = np.random.default_rng(0)
     vectors, previous, following = planted(rng, 60)
-    samples = Samples(vectors / corpus_scale(vectors), previous, following, CLASSES)
-    mixture = maximise(samples, rng.dirichlet(np.ones(3), 60))
-    joint = log_joint(samples, mixture)
+    samples = mixing.Samples(vectors / mixing.corpus_scale(vectors), previous, following, CLASSES)
+    mixture = mixing.maximise(samples, rng.dirichlet(np.ones(3), 60))
+    joint = mixing.log_joint(samples, mixture)
     for n, c in ((0, 0), (17, 2), (59, 1)):
         expected = np.log(mixture.weight[c])
         expected += multivariate_normal(mixture.mean[c], mixture.covariance[c]).logpdf(samples.vectors[n])
@@ -159,8 +155,8 @@ def test_em_never_falls():
     rng = np.random.default_rng(1)
     for count, components in ((20, 3), (150, 5), (600, 4)):
         vectors, previous, following = planted(rng, count)
-        samples = Samples(vectors / corpus_scale(vectors), previous, following, CLASSES)
-        _, history = climb(samples, rng.dirichlet(np.ones(components), count))
+        samples = mixing.Samples(vectors / mixing.corpus_scale(vectors), previous, following, CLASSES)
+        _, history = mixing.climb(samples, rng.dirichlet(np.ones(components), count))
         assert len(history) > 3
         assert (np.diff(history) > -1e-8 * abs(history[-1])).all()
 
@@ -169,9 +165,9 @@ def test_recovers_a_planted_dependence():
     # Catches context tables that are swapped (previous for next), transposed or without effect on the selection.
     rng = np.random.default_rng(2)
     vectors, previous, following = planted(rng, 800)
-    scale = corpus_scale(vectors)
-    mixture = fit_context(fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
-    tables = shape_tables([mixture], conditional=True)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_context(mixing.fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
+    tables = mixing.shape_tables([mixture], conditional=True)
     asked = np.arange(CLASSES)
     zero = np.zeros(CLASSES, dtype=np.int64)
     for soft in (False, True):
@@ -186,13 +182,13 @@ def test_tables_are_distributions_above_the_floor():
     rng = np.random.default_rng(3)
     vectors, previous, following = planted(rng, 3000)
     following[:] = 1  # never any other class
-    scale = corpus_scale(vectors)
-    mixture = fit_context(fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
+    scale = mixing.corpus_scale(vectors)
+    mixture = mixing.fit_context(mixing.fit_mixture(vectors, scale, 2, 0), vectors, scale, previous, following, CLASSES)
     for table in (mixture.log_previous, mixture.log_next):
-        assert table.min() >= LOG_FLOOR - 1e-12
+        assert table.min() >= mixing.LOG_FLOOR - 1e-12
         np.testing.assert_allclose(np.exp(table).sum(axis=1), 1)
     assert (mixture.log_next[:, 1] > -0.02).all()
-    assert (mixture.covariance[:, DURATION, DURATION] > 0).all()
+    assert (mixture.covariance[:, mixing.DURATION, mixing.DURATION] > 0).all()
 
 
 # ---- Closures and amplitude ------------------------------------------------------------------------------------------
@@ -290,3 +286,205 @@ def test_floats_interpolate_between_the_knots_of_pairs() -> None:
     ends = FloatTables(bare).select(*(np.array([value]) for value in (2, 200, 4, 7)))[0]
     assert np.allclose(found[0], ends[0] + 0.05 * (ends[1] - ends[0]))
     assert np.allclose(found[9], ends[0] + 0.95 * (ends[1] - ends[0]))
+
+
+# ---- Temporal kernels ------------------------------------------------------------------------------------------------
+
+
+CLASS = np.array([0, 1, 1, 2, 2, 2])  # phoneme 0 is silence, phoneme 5 never occurs
+PHONEMES = len(CLASS)
+FPS = 50
+
+
+def tables() -> mixing.ShapeTables:
+    """One component per phoneme, of 100 ms +- 20 ms."""
+    zero = np.zeros((PHONEMES, 13))
+    none = np.zeros((PHONEMES, 0))
+    return mixing.ShapeTables(
+        component_count=np.ones(PHONEMES, dtype=np.int64),
+        log_weight=np.zeros(PHONEMES),
+        duration_mean=np.full(PHONEMES, 0.10),
+        duration_variance=np.full(PHONEMES, 0.02**2),
+        shape=zero,
+        slope=zero,
+        log_previous=none,
+        log_next=none,
+    )
+
+
+def episode(rng: np.random.Generator, count: int) -> Recording:
+    """A random sequence of phonemes 0 to 4 with no motion yet."""
+    length = rng.integers(2, 9, count)
+    phoneme = np.concatenate([[0], rng.integers(1, 5, count - 2), [0]])
+    return Recording("x", phoneme, length / FPS, length, np.cumsum(length) - 1, np.zeros((length.sum(), 13)))
+
+
+def choice_of(material) -> Choice:
+    phoneme = np.concatenate([item.phoneme for item in material])
+    offset = np.clip(np.concatenate([item.duration for item in material]) - 0.10, -0.06, 0.06)
+    return Choice(phoneme[:, None], np.ones((len(phoneme), 1)), offset[:, None])
+
+
+def fitted_to(material, stand_in, penalties: Penalties, pair_count: int = PAIR_COUNT) -> Kernels:
+    asked = regression(material, tables(), CLASS, stand_in, 0, FPS, penalties, pair_count=pair_count)
+    return fit_kernels(asked, material, choice_of(material))
+
+
+def moved(item: Recording, given: mixing.ShapeTables, kernel: np.ndarray) -> np.ndarray:
+    shape = np.repeat(shapes(given, choice_of([item])), item.length, axis=0)
+    return add_kernels(shape, item.phoneme_at(), kernel, lags(FPS), 0)
+
+
+def planted_kernels(seed: int, episodes: int):
+    """Episodes whose motion is exactly what smooth kernels, shapes and slopes of each phoneme make."""
+    rng = np.random.default_rng(seed)
+    taps = len(lags(FPS))
+    hump = np.exp(-0.5 * ((np.arange(taps) - taps / 2) / 3) ** 2)
+    truth = np.random.default_rng(99)
+    kernel = truth.normal(0, 40, (PHONEMES, 1, 13)) * np.roll(hump, 2)[None, :, None]
+    given = replace(tables(), shape=truth.normal(0, 50, (6, 13)), slope=truth.normal(0, 300, (6, 13)))
+    result = []
+    for _ in range(episodes):
+        item = episode(rng, 30)
+        motion = moved(item, given, kernel)
+        result.append(Recording(item.name, item.phoneme, item.duration, item.length, item.apex, motion))
+    return result, given, kernel
+
+
+def test_lags_and_taps_by_hand():
+    # Catches lags with the sign turned round or beyond the device's limits, and neighbours beyond the ends that are
+    # not silence.
+    np.testing.assert_array_equal(lags(50), np.arange(-18, 7, 2))
+    np.testing.assert_array_equal(lags(25), np.arange(-9, 4))
+    np.testing.assert_array_equal(lags(50, 0.1), np.arange(-18, 5, 2))
+    assert lags(50, 0.0)[-1] == 0
+    np.testing.assert_array_equal(lags(100, 0.36), np.arange(-20, 21, 4))  # the device sees 20 frames to each side
+    for fps in range(1, 251):
+        assert 1 <= len(lags(fps, 0.36)) <= 32 and -20 <= lags(fps, 0.36)[0] == -lags(fps, 0.36)[-1]
+    found = tapped(np.array([1, 2, 3]), np.array([-2, 0, 1]), silence=7)
+    np.testing.assert_array_equal(found, [[7, 1, 2], [7, 2, 3], [1, 3, 7]])
+
+
+def test_recovers_planted_kernels():
+    # Catches a kernel, shape or slope laid at the wrong lag, phoneme or scale: motion of other episodes is predicted.
+    # And kernels that only predict in sum: away from lag 0, where shapes do the same, differences are unique.
+    material, _, kernel = planted_kernels(3, 200)
+    weak = Penalties(kernel=1e-2, shape=1e-2, slope=1e-2, silence=1.0)
+    fitted = fitted_to(material, range(PHONEMES), weak)
+    for item in planted_kernels(2, 5)[0]:
+        error = moved(item, fitted.tables, fitted.kernel) - item.frames
+        assert np.sqrt((error**2).mean()) < 0.01 * item.frames.std()
+    away = np.abs(lags(FPS)) >= 2
+    found, true = ((item[1:5] - item[1])[:, away] for item in (fitted.kernel, kernel))
+    assert np.abs(found - true).max() < 0.05 * np.abs(true).max()
+
+
+@pytest.mark.parametrize(("intercept", "weighted"), [(np.inf, False), (10.0, False), (10.0, True)])
+def test_equals_the_regression_in_two_parts(intercept: float, weighted: bool) -> None:
+    # Catches a prior that is not that of a class kernel plus a residual, intercepts that are not solved for with the
+    # rest, knots and weights in the wrong place: here all are columns and rows of a plain ridge.
+    rng = np.random.default_rng(4)
+    material = [episode(rng, 25) for _ in range(6)]
+    material = [
+        Recording(i.name, i.phoneme, i.duration, i.length, i.apex, rng.normal(0, 50, i.frames.shape)) for i in material
+    ]
+    each = np.ones((6, 13))
+    if weighted:
+        each[4:], each[4:, 2] = 3.0, 0.0  # the last two count three times, but for the third channel
+        material = [replace(i, weight=np.tile(row, (len(i.frames), 1))) for i, row in zip(material, each)]
+    penalties = Penalties(kernel=20.0, residual=6.0, smoothness=0.0, shape=15.0, slope=25.0, silence=0.25, pair=8.0,
+                          intercept=intercept)
+    fitted = fitted_to(material, range(PHONEMES), penalties, 9)
+
+    lag, classes, pairs = lags(FPS), 3, [tuple(key) for key in fitted.pair_key.tolist()]
+    assert 2 < len(pairs) < 40
+    blocks = []
+    for number, item in enumerate(material):
+        taps = tapped(item.phoneme_at(), lag, 0)
+        own = np.eye(PHONEMES)[item.phoneme_at()]
+        z = np.repeat(choice_of([item]).offset / 0.02, item.length, axis=0)
+        parts = [np.eye(classes)[CLASS[taps]], np.eye(PHONEMES)[taps]]
+        knots = np.zeros((len(taps), 2, len(pairs)))
+        starts, around = np.cumsum(item.length) - item.length, neighbours(item.phoneme, 0)
+        for row, (phoneme, side, other) in enumerate(pairs):
+            for i in np.flatnonzero((item.phoneme == phoneme) & (around[side] == other)):
+                for j in range(item.length[i]):
+                    middle = (j + 0.5) / item.length[i]
+                    knots[starts[i] + j, :, row] = 1 - middle, middle
+        alone = np.eye(len(material))[np.full(len(taps), number)] * np.isfinite(intercept)
+        blocks.append(np.hstack([part.transpose(0, 2, 1).reshape(len(taps), -1) for part in parts]
+                                + [own, own * z, knots.reshape(len(taps), -1), alone]))
+    x, y = np.concatenate(blocks), np.concatenate([item.frames for item in material])
+    quiet = np.where(np.concatenate([item.phoneme_at() for item in material]) == 0, 0.25, 1.0)
+    counts = [classes * len(lag), PHONEMES * len(lag), PHONEMES, PHONEMES, 2 * len(pairs), len(material)]
+    last = intercept if np.isfinite(intercept) else 1.0
+    ridge = np.repeat([20.0, 120.0, 15.0, 25.0, 8.0, last], counts)
+    for channel in (0, 2):
+        weight = quiet * np.repeat(each[:, channel], [len(item.frames) for item in material])
+        target = y[:, channel] - np.average(y[:, channel], weights=weight)
+        strength = each[:, channel].max()
+        rows = (x * weight[:, None]).T
+        solution = np.linalg.solve(rows @ x + strength * np.diag(ridge), rows @ target)
+        by_class, residual, _, slope, pair, _ = np.split(solution, np.cumsum(counts)[:-1])
+        kernel = by_class.reshape(-1, len(lag))[CLASS] + residual.reshape(-1, len(lag))
+        np.testing.assert_allclose(fitted.kernel[..., channel], kernel, atol=1e-6)
+        np.testing.assert_allclose(fitted.tables.slope[:, channel] * 0.02, slope, atol=1e-6)
+        np.testing.assert_allclose(fitted.pair_shape[..., channel], pair.reshape(2, -1).T, atol=1e-6)
+    np.testing.assert_allclose(fitted.kernel[5, :, 2], by_class.reshape(-1, len(lag))[2], atol=1e-6)  # never seen
+
+
+def test_a_weight_for_all_changes_nothing_and_makes_no_pair() -> None:
+    # Catches penalties that do not go with the weights, and rows for what is seen often by weight alone.
+    material, _, _ = planted_kernels(6, 12)
+    once = fitted_to(material, range(PHONEMES), Penalties())
+    heavy = [replace(item, weight=np.full(item.frames.shape, 7.0)) for item in material]
+    again = fitted_to(heavy, range(PHONEMES), Penalties())
+    np.testing.assert_array_equal(again.pair_key, once.pair_key)
+    np.testing.assert_allclose(again.kernel, once.kernel, atol=1e-6)
+    silent = [*material, *(replace(item, weight=np.zeros(item.frames.shape)) for item in planted_kernels(7, 12)[0])]
+    without = fitted_to(silent, range(PHONEMES), Penalties())
+    np.testing.assert_array_equal(without.pair_key, once.pair_key)
+    np.testing.assert_allclose(without.tables.shape, once.tables.shape, atol=1e-6)
+
+
+def test_shares_of_knots_by_hand() -> None:
+    # Catches knots at the middle of the outer frames instead of at the phoneme's ends.
+    np.testing.assert_allclose(knot_shares(np.array([1, 4]), 2)[:, 1], [0.5, 0.125, 0.375, 0.625, 0.875])
+    np.testing.assert_array_equal(knot_shares(np.array([2, 3]), 2).sum(axis=1), np.ones(5))
+    np.testing.assert_array_equal(knot_shares(np.array([2, 3]), 1), np.ones((5, 1)))
+
+
+def test_a_substituted_phoneme_moves_as_its_substitute():
+    # Catches a phoneme whose whole class is missing and that would rest at the mean of all motion.
+    material, _, _ = planted_kernels(5, 20)
+    stand_in = [0, 1, 2, 3, 4, 1]
+    fitted = fitted_to(material, stand_in, Penalties())
+    np.testing.assert_array_equal(fitted.kernel[5], fitted.kernel[1])
+    np.testing.assert_array_equal(fitted.tables.shape[5], fitted.tables.shape[1])
+    np.testing.assert_array_equal(fitted.tables.slope[5], fitted.tables.slope[1])
+    assert np.abs(fitted.tables.shape[4] - fitted.tables.shape[1]).max() > 1
+
+
+def test_pairs_are_recovered_and_rare_ones_left_out():
+    # Catches sides or neighbours taken for each other, and rows for pairs that are too rare to be believed.
+    rng = np.random.default_rng(11)
+    truth = {(1, 0, 2): 40.0, (1, 1, 3): -30.0}
+    material = []
+    for count in [40] * 30:
+        item = episode(rng, count)
+        frames = item.frames.copy()
+        before, after = neighbours(item.phoneme, 0)
+        for i, start in enumerate(np.cumsum(item.length) - item.length):
+            own = int(item.phoneme[i])
+            value = truth.get((own, 0, int(before[i])), 0.0) + truth.get((own, 1, int(after[i])), 0.0)
+            frames[start : start + item.length[i]] = value
+        material.append(replace(item, frames=frames))
+    stiff = Penalties(kernel=1e6)
+    fitted = fitted_to(material, range(PHONEMES), stiff)
+    row = {tuple(key): value for key, value in zip(fitted.pair_key.tolist(), fitted.pair_shape.mean(axis=1)[:, 0])}
+    for key, value in truth.items():
+        others = [row[other] for other in row if other[:2] == key[:2] and other != key]
+        assert abs(row[key] - np.mean(others) - value) < 0.15 * abs(value)
+        assert np.ptp(others) < 0.15 * abs(value)
+    codes, counts = np.unique(pair_codes(material, PHONEMES, 0), return_counts=True)
+    assert len(row) == int((counts >= PAIR_COUNT).sum()) < len(codes)

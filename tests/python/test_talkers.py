@@ -26,7 +26,7 @@ from labial.train.recordings import Recording, occurrences, recordings
 from labial.train.talkers import SHARED, fit_talkers, weights_of
 from models import write_episode, write_motion
 from packages import SOURCE
-from test_kernels import CLASS, FPS, PHONEMES, choice_of, episode, tables
+from test_shapes import CLASS, FPS, PHONEMES, choice_of, episode, tables
 from test_train import OPTIONS, motion_error, symmetric
 from test_train import episode as spoken
 
@@ -436,7 +436,7 @@ def test_a_model_is_adapted_to_a_talker(shared, tmp_path) -> None:
 @pytest.mark.slow
 def test_an_adapted_model_moves_as_far_as_its_talker(shared, monkeypatch: pytest.MonkeyPatch) -> None:
     # Catches the scale of the talkers who taught the shared model, and one that a second widening multiplies.
-    monkeypatch.setattr("labial.train.adapt.HALF", 0.0)  # or seconds of him would count for little
+    monkeypatch.setattr("labial.train.talkers.HALF", 0.0)  # or seconds of him would count for little
     own = [item for item in two_talkers() if item.source.talker == "y"]
     channels = solved(shared.source)
     for scale in (0.5, 1.5):

@@ -19,7 +19,7 @@ from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import SPEECH
 from labial.corpus.timings import TOLERANCE, phoneme_segments
 from labial.errors import DataError, LabialError
-from labial.files.grammar import is_number, is_whole, lines_of, number, number_or_nan, read_bytes, read_text
+from labial.files.grammar import lines_of, read_bytes, read_text
 from messages import SAMPLES
 from packages import SOURCE, needs_runtime
 from test_npm import read_by_node
@@ -275,15 +275,6 @@ def test_npm_package_reads_by_the_grammar() -> None:
         if differs(expected, found):
             wrong.append(f"cases.tsv:{line}, {name}: {found}, not {expected}")
     assert not wrong, "\n".join(wrong)
-
-
-def test_numbers(tmp_path: Path) -> None:
-    """Would catch a number that is read although it is none, and an error without its place."""
-    assert number("f", 3, "-2.5e1") == -25.0 and math.isnan(number_or_nan("f", 3, "NaN"))
-    assert is_number("1e999") and not is_number("1\n") and is_whole("0" * 30 + "7") and not is_whole("9" * 19)
-    for text in ("1e999", "nan", "", "1_0", "+1", "\u0661"):
-        with pytest.raises(DataError, match="^f:3: the time .* is not a finite number$"):
-            number("f", 3, text, "the time")
 
 
 def test_text(tmp_path: Path) -> None:

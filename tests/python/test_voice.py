@@ -10,10 +10,9 @@ import json
 import math
 import random
 import shutil
-import subprocess
 import sys
 import time
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 import pytest
 
@@ -22,7 +21,7 @@ from labial.core.words import OwnWords
 from labial.integrations.lips import Lips
 from messages import SAMPLES
 from oracle import Plan, rested, times
-from packages import needs_runtime
+from packages import needs_runtime, run
 from regenerate_voices import SOUNDS, WORDS
 
 pytestmark = needs_runtime
@@ -47,18 +46,11 @@ def said(words: Sequence[Tuple[str, float, float]]) -> List[Tuple[str, int]]:
 
 
 def test_frames_tell_their_sounds() -> None:
-    """Shares of sounds are those of a stream of the same phonemes, but in the first frames, which fade in."""
-    spoken = [("SIL", 200), ("TH", 100), ("IY", 200), ("M", 100), ("AA", 200), ("SIL", 3_600_000)]
-    with labial.Voice() as voice, labial.Stream() as stream:
-        start = 0
-        for label, length in spoken[:-1]:
-            voice.push(label, start / 1000, (start + length) / 1000)
-            start += length
-        for label, length in spoken:
-            stream.push(label, length)
-        frames = [frame for number in range(40) for frame in voice.played(number / 50)]
-        expected = [next(stream).visemes for _ in range(40)]
-    assert [frame.visemes for frame in frames[8:]] == expected[8:]
+    """In the order of VISEMES, and to faces that follow them."""
+    with labial.Voice() as voice:
+        voice.push("TH", 0.2, 0.3)
+        voice.push("M", 0.5, 0.6)
+        frames = voice.played(0.0) + [frame for number in range(1, 40) for frame in voice.played(number / 50)]
     assert frames[12].visemes[3] > 100 and frames[27].visemes[1] > 100  # thin, mama
     assert frames[12].rig("oculus")["TH"] > 0.7 > 0.1 > labial.Frame(12, frames[12].faps).rig("oculus")["TH"]
 
@@ -106,66 +98,21 @@ def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
         assert found[0].filename == __file__
 
 
-@pytest.mark.parametrize("lead", [0.0, 0.02, 0.2])
-def test_lips_close_in_words_that_are_told_when_they_begin(lead: float) -> None:
-    """Wherever they do where all words are known: at most so far apart, within 80 ms of the same moment."""
-    texts = "my mum bought a map but Bob may pay".split()
-    words = [(word, 0.1 + 0.3 * k, 0.4 + 0.3 * k) for k, word in enumerate(texts)]
-    with labial.Voice() as known, labial.Voice() as told:
-        for word in words:
-            known.say(*word)
-        wanted = [-sum(faps[3:5]) for faps in played(known, 0, 3.0)]
-        shown: List[int] = []
-        for word in words:
-            shown += [-sum(faps[3:5]) for faps in played(told, len(shown) / 50, word[1] - lead)]
-            told.say(*word)
-        shown += [-sum(faps[3:5]) for faps in played(told, len(shown) / 50, 3.0)]
-    closed = [k for k, opening in enumerate(wanted) if opening <= 24 and 5 < k < 135]
-    assert len(closed) > 20
-    assert all(min(shown[k - 4 : k + 5]) <= 50 for k in closed)
-
-
-@pytest.mark.parametrize("begins", [False, True])
-def test_a_face_comes_to_rest_while_the_clock_stands(begins: bool) -> None:
-    """An interrupted sound stops, and its clock with it; what is told for the next answer waits for its sound."""
-    with labial.Voice() as voice, labial.Voice() as other:
+def test_a_face_comes_to_rest_while_the_clock_stands() -> None:
+    """An interrupted sound stops, and its clock with it."""
+    with labial.Voice() as voice:
         voice.push("AA", 0.0, 2.0)
-        shown = played(voice, 0, 0.6)[-1]
-        assert shown[0] > 100
+        assert played(voice, 0, 0.6)[-1][0] > 100
         voice.cancel(100)
-        if begins:
-            voice.begin(0.6)
-            voice.push("IY", 0.5, 1.0)
         poses: List[labial.Frame] = []
         end = time.monotonic() + 5.0
         while len(poses) < 5 and time.monotonic() < end:
+            assert voice.cancelled and not voice.done
             poses += voice.played(0.6)
             time.sleep(0.005)
-        assert [pose.faps for pose in poses][-1] == (0,) * 13 != poses[0].faps
+        assert poses[-1].faps == (0,) * 13 != poses[0].faps
         assert {pose.number for pose in poses} == {30} and voice.played(0.6) == [] and voice.time == 0.62
-        assert voice.done is not begins and voice.cancelled is not begins
-        other.push("IY", 1.1, 1.6)
-        assert not begins or played(voice, 0.62, 1.6)[-30:] == played(other, 0, 1.6)[-30:]
-
-
-def test_a_face_comes_to_rest_at_the_end_while_the_clock_stands(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A clock that is the sound stops with it: then time passes behind :meth:`finish`, once the clock stood a while."""
-    passed = 100.0
-    monkeypatch.setattr("labial.runtime.voice.time.monotonic", lambda: passed)
-    with labial.Voice() as voice:
-        voice.push("AA", 0.0, 1.0)
-        voice.finish()
-        played(voice, 0, 0.8)
-        passed += 5.0
-        assert voice.played(0.8) == [] and not voice.done  # a player that waits for sound
-        stands = played(voice, 0.82, 0.96)[-1]
-        shown: List[Tuple[int, ...]] = []
-        for _ in range(60):
-            passed += 0.0101
-            shown += [frame.faps for frame in voice.played(0.96)]
-            assert voice.done is (len(shown) == 15) and bool(shown) is (passed > 105.1)
-        assert shown[0] != stands and shown[-1] == (0,) * 13
-        assert voice.time == 0.98
+        assert voice.done and voice.cancelled
 
 
 def test_lips_that_come_to_rest_at_the_end_do_not_part_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -183,15 +130,16 @@ def test_lips_that_come_to_rest_at_the_end_do_not_part_again(monkeypatch: pytest
         assert lips.done
 
 
-def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
-    async def run(voice: labial.Voice) -> List[labial.Frame]:
-        begin = time.monotonic()
-        return [frame async for frame in voice.follow(lambda: min(time.monotonic() - begin, 0.3))]
+async def followed(voice: labial.Voice, clock: Callable[[], Optional[float]]) -> List[labial.Frame]:
+    return [frame async for frame in voice.follow(clock)]
 
+
+def test_following_a_clock_that_stops_with_the_sound_ends() -> None:
     with labial.Voice() as voice:
         voice.push("AA", 0.0, 0.3)
         voice.finish()
-        frames = asyncio.run(asyncio.wait_for(run(voice), 20))
+        begin = time.monotonic()
+        frames = asyncio.run(asyncio.wait_for(followed(voice, lambda: min(time.monotonic() - begin, 0.3)), 20))
         assert frames[-1].faps == (0,) * 13 and frames[-1].number == 15
 
 
@@ -229,34 +177,9 @@ def test_lips_close_in_long_texts_without_blanks(language: str, text: str, close
         assert character not in "，。" or max(pause) < 120, start
 
 
-def test_done() -> None:
-    """Half a second after the end of what was told, once nothing more is to come; after a cancel, with the face."""
-    with labial.Voice() as voice:
-        voice.say("hum", 0, 1)
-        played(voice, 0, 5.0)
-        assert not voice.done
-        voice.finish()
-        assert voice.done
-        voice.say("More.", 0, 1)  # the next utterance, from now on
-        assert not voice.done and voice.time == 5.02
-        voice.finish()
-        played(voice, 5.02, 6.48)
-        assert not voice.done
-        voice.played(6.5)
-        assert voice.done
-        voice.cancel(100)
-        assert not voice.done
-        voice.played(6.6)
-        assert voice.done
-
-
 def test_follow_waits_for_a_late_clock_and_ends() -> None:
     """An asynchronous loop: nothing while the sound has not begun, then each frame once, until all is shown."""
-    looks: List[Optional[float]] = [None, None, *(k * 0.03 for k in range(200))]
-
-    async def run(voice: labial.Voice, clock: Iterable[Optional[float]]) -> List[labial.Frame]:
-        left = iter(clock)
-        return [frame async for frame in voice.follow(lambda: next(left))]
+    looks: Iterator[Optional[float]] = iter([None, None, *(k * 0.03 for k in range(200))])
 
     async def closed(voice: labial.Voice) -> int:
         count = 0
@@ -279,7 +202,7 @@ def test_follow_waits_for_a_late_clock_and_ends() -> None:
             for word in WORDS:
                 voice.say(*word)
             voice.finish()
-            frames = asyncio.run(run(voice, looks))
+            frames = asyncio.run(followed(voice, lambda: next(looks)))
             assert voice.done
         assert asyncio.run(closed(labial.Voice())) == 30
     assert [frame.number for frame in frames] == list(range(140))
@@ -338,16 +261,12 @@ def test_malformed_messages_change_nothing(form: Optional[str], message: Any, pr
 
 
 @pytest.mark.parametrize("form, message, problem", [
-    (None, {"word": "a", "start": 2, "end": 1}, "'a' ends at 1 s, before its start 2 s"),
-    (None, {"word": "a", "start": 2, "end": 100000}, "more than a day"),
     (None, {"word": "a", "start": 2, "end": 4000}, "more than an hour"),
     (None, {"word": "a" * 1001, "start": 2, "end": 3}, "a text of 1001 characters"),
-    (None, {"word": "a", "start": "x", "end": 3}, "'start' is x, not a number"),
     (None, {"word": "a", "start": -1, "end": 3}, "not a number from 0 on"),
     (None, {"word": "a", "start": 0, "end": None}, "'end' is null, not a number from 0 on"),
     (None, '{"word": "hum", "start": 0.1, "end": 0.5}\n{"word": ', "not JSON"),
     ("azure", {"viseme_id": 77, "audio_offset": 0}, "no viseme is called '77'"),
-    ("cartesia", {"word_timestamps": {"words": [1], "start": [0], "end": [1]}}, "is 1, not text"),
     ("cartesia", {"word_timestamps": {"words": ["a"], "start": [0, 1], "end": [1]}}, "are not of one length"),
     ("elevenlabs", {"alignment": {"chars": ["a"]}}, "no field"),
     ("kokoro-fastapi", {"timestamps": [{"word": "hum", "start_time": 0.1, "end_time": 0.5},
@@ -395,7 +314,7 @@ def test_misuse() -> None:
 
 
 def test_a_server_cannot_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    """So much ahead of the sound is too much; what is over is forgotten."""
+    """So much ahead of the sound is too much, and what was known stays known."""
     monkeypatch.setattr("labial.runtime.voice.PLACES", 500)
     with labial.Voice() as voice:
         voice.feed([{"word": "a", "start": k / 100, "end": k / 100} for k in range(10)])
@@ -408,18 +327,10 @@ def test_a_server_cannot_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> Non
                                           "charDurationsMs": [1] * 501}}
     with labial.Voice() as voice, pytest.raises(labial.errors.LabialError, match="there is room for 500"):
         voice.feed(characters)
-    with labial.Voice() as voice:
-        for second in range(2000):  # four times as much as there is room for
-            if second % 20 == 0:
-                voice.begin(second)
-            voice.say("hum", second % 20 + 0.1, second % 20 + 0.5)
-            voice.say("by", second % 20 + 0.6, second % 20 + 0.9)
-            voice.played(second + 0.1)
-        assert voice.stats[1:] == (4000, 0, 0)
 
 
 def test_utterances_have_names() -> None:
-    """Words come before the sound, which begins later than the clock; those of an interrupted answer are dropped."""
+    """Words come before the sound, which begins later than the clock; what is cancelled is counted as skipped."""
     with labial.Voice() as voice:
         for name, text in (("a", "Maybe"), ("b", "people")):
             voice._tell("words", [(text, 0.0, 0.5)], utterance=name)
@@ -428,16 +339,11 @@ def test_utterances_have_names() -> None:
         voice.finish()
         shown = played(voice, 0, 2)
         assert voice.done
+        voice.cancel()
+        voice.say("hum", 0.1, 0.5)
+        assert voice.stats[1:] == (2, 0, 1)
     silence = ("SIL", 300)
     assert shown == motion([("SIL", 200), *said([("Maybe", 0, 0.5)]), silence, *said([("people", 0, 0.5)])], 101)
-    with labial.Voice("cartesia") as voice:
-        for answer in ("a", "b", "a"):
-            voice.feed({"type": "timestamps", "context_id": answer,
-                        "word_timestamps": {"words": ["hum"], "start": [0.1], "end": [0.5]}})
-            if answer == "a":
-                voice.cancel()
-                voice.begin()
-        assert voice.stats[1:] == (2, 0, 1), "the second time it is of the answer before"
 
 
 def test_pronunciations_and_labels() -> None:
@@ -493,16 +399,12 @@ def test_what_others_said_is_kept_within_bounds(monkeypatch: pytest.MonkeyPatch)
 def test_a_voice_needs_no_numpy() -> None:
     script = ("import sys\nsys.modules['numpy'] = None\nimport labial\nvoice = labial.Voice()\n"
               "voice.feed({'word': 'hum', 'start': 0, 'end': 1})\nprint(len(voice.played(0.5)))\n")
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout == "26\n"
+    assert run(sys.executable, "-c", script) == "26\n"
 
 
 def test_a_voice_that_says_nothing_is_done() -> None:
     """A service that fails before its first message: the loop ends though the sound never began."""
-    async def run(voice: labial.Voice) -> List[labial.Frame]:
-        return [frame async for frame in voice.follow(lambda: None)]
-
     with labial.Voice() as voice:
         assert not voice.done
         voice.finish()
-        assert voice.done and asyncio.run(run(voice)) == []
+        assert voice.done and asyncio.run(followed(voice, lambda: None)) == []

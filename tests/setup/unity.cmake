@@ -12,12 +12,10 @@ set(commit cbcd08fa7de711053a3deec6339ee89cad5d2697) # v2.6.1
 set(repository https://github.com/ThrowTheSwitch/Unity.git)
 set(fetched "${PROJECT_BINARY_DIR}/_deps/labial_unity-src")
 set(LABIAL_UNITY_MISSING FALSE)
-if(NOT TARGET labial_unity)
-  unset(LABIAL_UNITY_SOURCE CACHE) # of another Unity, that was found before
-endif()
 if(TARGET labial_unity)
   return()
 endif()
+unset(LABIAL_UNITY_SOURCE CACHE) # of another Unity, that was found before
 
 # The framework's own source in `directory`, for images without a C library: text goes to the board.
 function(labial_add_unity directory)

@@ -6,15 +6,19 @@ import os
 import shlex
 import shutil
 import subprocess
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from typing import Tuple
+from typing import Sequence, Tuple
 
 import av
-import drawn_face
+import cv2
+import mediapipe
 import numpy as np
 import pytest
+import skimage
 import soundfile
+from scipy.spatial import Delaunay
 
 from labial.__main__ import main
 from labial.capture.landmarks import INDEX, Given, read_landmarks
@@ -22,13 +26,85 @@ from labial.corpus import read_corpus
 from labial.sound.samples import RATE, read_sound
 from labial.sound.video import pictures
 
-SECONDS = 2.4
-STILL = 0.6  # seconds with closed lips, at both ends
+# The photograph is scikit-image's astronaut (NASA, public domain). MediaPipe's landmarks of it are a mesh in depth,
+# which is turned, whose lower lip and chin are moved, and on which the photograph is drawn again triangle by triangle.
+
+SIZE = 512  # pixels of a picture's sides
+_LOWER_INNER = (95, 88, 178, 87, 14, 317, 402, 318, 324)
+_UPPER = 13
 
 
 @cache
-def drawn(opening: int, yaw: int = 0) -> np.ndarray:
-    return drawn_face.draw(opening, yaw)
+def mesh() -> Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Photograph, (N, 3) vertices in pixels of which 468 are landmarks, (M, 3) triangles, and (N,) how far a vertex
+    goes with the jaw, 0 .. 1."""
+    picture = cv2.imread(str(Path(skimage.__file__).parent / "data" / "astronaut.png"))[0:256, 128:384]
+    picture = cv2.resize(picture, (SIZE, SIZE), interpolation=cv2.INTER_CUBIC)
+    with mediapipe.solutions.face_mesh.FaceMesh(static_image_mode=True) as tracker:
+        found = tracker.process(cv2.cvtColor(picture, cv2.COLOR_BGR2RGB)).multi_face_landmarks[0]
+    points = np.array([(p.x, p.y, p.z) for p in found.landmark]) * SIZE
+    middle = points.mean(axis=0)
+    angles = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    ring = [(middle[0] + 1.0 * 130 * np.cos(a), middle[1] + 1.25 * 130 * np.sin(a), middle[2] + 60) for a in angles]
+    edge = [(x, y, 0) for x in np.linspace(0, SIZE - 1, 5) for y in np.linspace(0, SIZE - 1, 5)
+            if x in (0, SIZE - 1) or y in (0, SIZE - 1)]
+    vertices = np.concatenate([points, ring, edge])
+    left, right = points[78], points[308]
+    line = left[1] + (vertices[:, 0] - left[0]) / (right[0] - left[0]) * (right[1] - left[1])
+    across = (vertices[:, 0] - (left[0] + right[0]) / 2) / (right[0] - left[0])
+    jaw = np.clip((vertices[:, 1] - line - 4) / 12, 0, 1) * np.exp(-(across**2) / 0.5)
+    profile = np.clip(1 - (2 * across) ** 2, 0, 1)
+    jaw[list(_LOWER_INNER)] = profile[list(_LOWER_INNER)]
+    jaw[468:] = 0
+    return picture, vertices, Delaunay(vertices[:, :2]).simplices, jaw
+
+
+@cache
+def draw(opening: float, yaw: float = 0.0) -> np.ndarray:
+    """(SIZE, SIZE, 3) BGR: the face with its lips `opening` pixels apart, 0 closed, turned aside by degrees."""
+    picture, rest, triangles, jaw = mesh()
+    moved = rest.copy()
+    moved[:, 1] += jaw * (opening - (rest[14, 1] - rest[_UPPER, 1]))
+    head = slice(0, len(rest) - 16)
+    a = np.radians(yaw)
+    about_y = np.array([[np.cos(a), 0, np.sin(a)], [0, 1, 0], [-np.sin(a), 0, np.cos(a)]])
+    pivot = rest[:468].mean(axis=0) + (0, 0, 80)
+    moved[head] = (moved[head] - pivot) @ about_y.T + pivot
+    result = picture.copy()
+    for corners in triangles[np.argsort(-moved[triangles, 2].mean(axis=1))]:  # the farthest first
+        source, target = rest[corners, :2].astype(np.float32), moved[corners, :2].astype(np.float32)
+        x, y, width, height = cv2.boundingRect(target)
+        x, y = max(x, 0), max(y, 0)
+        width, height = min(width, SIZE - x), min(height, SIZE - y)
+        if width <= 0 or height <= 0:
+            continue
+        shift = np.float32([x, y])
+        matrix = cv2.getAffineTransform(source, target - shift)
+        patch = cv2.warpAffine(picture, matrix, (width, height), borderMode=cv2.BORDER_REPLICATE)
+        mask = np.zeros((height, width), np.uint8)
+        cv2.fillConvexPoly(mask, np.int32(np.round((target - shift) * 16)), 1, shift=4)
+        result[y : y + height, x : x + width][mask > 0] = patch[mask > 0]
+    return result
+
+
+def write(path: Path, pictures: Sequence[np.ndarray], fps: int) -> Path:
+    """A video of these pictures (BGR)."""
+    path.parent.mkdir(exist_ok=True)
+    with av.open(str(path), "w") as out:
+        stream = out.add_stream("mpeg4", rate=Fraction(fps))
+        stream.height, stream.width = pictures[0].shape[:2]
+        stream.bit_rate, stream.pix_fmt = 8_000_000, "yuv420p"
+        for picture in pictures:
+            out.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="bgr24")))
+        out.mux(stream.encode())
+    return path
+
+
+# ---- The tests -------------------------------------------------------------------------------------------------------
+
+
+SECONDS = 2.4
+STILL = 0.6  # seconds with closed lips, at both ends
 
 
 def openings(fps: int) -> np.ndarray:
@@ -51,7 +127,7 @@ def lips(path: Path) -> Tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("fps", [25, 60])
 def test_the_lips_are_found_where_they_were_drawn(tmp_path: Path, fps: int) -> None:
     """Catches pictures in wrong colours, order or time, axes that are exchanged, and a tracker that lags."""
-    path = drawn_face.write(tmp_path / "a.mp4", [drawn(o) for o in openings(fps)], fps)
+    path = write(tmp_path / "a.mp4", [draw(o) for o in openings(fps)], fps)
     assert tracked(path) == 0
     times, found = lips(path)
     assert len(times) == round(SECONDS * fps) and np.allclose(times, np.arange(len(times)) / fps, atol=1e-3)
@@ -64,7 +140,7 @@ def test_the_lips_are_found_where_they_were_drawn(tmp_path: Path, fps: int) -> N
 
 def test_a_corpus_comes_of_it(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """landmarks, then record: FAPs at the video's own rate, closed where the lips were drawn closed."""
-    path = drawn_face.write(tmp_path / "in" / "a.mp4", [drawn(o) for o in openings(25)], 25)
+    path = write(tmp_path / "in" / "a.mp4", [draw(o) for o in openings(25)], 25)
     assert tracked(path) == 0
     end = SECONDS - STILL
     path.with_suffix(".lab").write_text(f"0 {STILL} SIL\n{STILL} {end} AA\n{end} {SECONDS} SIL\n")
@@ -79,7 +155,7 @@ def test_a_corpus_comes_of_it(tmp_path: Path, capsys: pytest.CaptureFixture) -> 
 def test_a_turned_head_is_told_by_record(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """What MediaPipe says of a head that was drawn turned by 40 degrees is beyond the limit, of 10 degrees within."""
     plan = [0] * 30 + [10] * 8 + [0] * 12 + [40] * 4 + [0] * 6
-    path = drawn_face.write(tmp_path / "in" / "a.mp4", [drawn(0, yaw) for yaw in plan], 25)
+    path = write(tmp_path / "in" / "a.mp4", [draw(0, yaw) for yaw in plan], 25)
     assert tracked(path) == 0
     path.with_suffix(".lab").write_text("0 2.4 SIL\n")
     assert main(["record", str(tmp_path / "in"), "-o", str(tmp_path / "corpus")]) == 0
@@ -91,8 +167,8 @@ def test_two_faces_and_none(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
     """The talker on the left opens its mouth, the face on the right does not; for half a second both are gone."""
     told = openings(25)
     empty = np.full((512, 1024, 3), 128, np.uint8)
-    both = [np.concatenate([drawn(o), drawn(0)], axis=1) if not 20 <= t < 32 else empty for t, o in enumerate(told)]
-    path = drawn_face.write(tmp_path / "a.mp4", both, 25)
+    both = [np.concatenate([draw(o), draw(0)], axis=1) if not 20 <= t < 32 else empty for t, o in enumerate(told)]
+    path = write(tmp_path / "a.mp4", both, 25)
     assert tracked(path) == 1
     assert "a.mp4: two faces, the second from 0.00 to" in capsys.readouterr().err
     assert not path.with_suffix(".npz").exists()
@@ -118,9 +194,9 @@ def test_what_is_no_video_or_has_no_face(tmp_path: Path, capsys: pytest.CaptureF
     path = tmp_path / "a.wav"
     fails("a.wav: no picture, only sound")
     grey = [np.full((128, 128, 3), 128, np.uint8)] * 5
-    path = drawn_face.write(tmp_path / "b.mp4", grey, 25)
+    path = write(tmp_path / "b.mp4", grey, 25)
     fails("b.mp4: no face is found in any frame")
-    path = drawn_face.write(tmp_path / "c.mp4", grey[:1], 25)
+    path = write(tmp_path / "c.mp4", grey[:1], 25)
     fails("c.mp4: fewer than two frames")
     fails("no.task: no such file", "--task", "no.task")
     (tmp_path / "bad.task").write_bytes(b"x" * 99)
@@ -171,7 +247,7 @@ def speaking(path: Path, sentence: str) -> None:
         video.width = video.height = 512
         video.pix_fmt, video.bit_rate = "yuv420p", 8_000_000
         for level in np.sqrt(loud / loud.max()):
-            out.mux(video.encode(av.VideoFrame.from_ndarray(drawn(2 * round(13 * level)), format="bgr24")))
+            out.mux(video.encode(av.VideoFrame.from_ndarray(draw(2 * round(13 * level)), format="bgr24")))
         out.mux(video.encode())
         frame = av.AudioFrame.from_ndarray(samples[None], format="s16", layout="mono")
         frame.sample_rate, frame.pts = rate, 0

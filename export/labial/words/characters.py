@@ -15,6 +15,9 @@ EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DIVIDED, CUBE = (ch
 _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "³": CUBE, "×": TIMES,
           "−": MINUS, "÷": DIVIDED, "’": "'", "‘": "'", "ʼ": "'", "`": "'", "µ": "u", "μ": "u",
           "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-",
+          # Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer.
+          **dict(zip("\u037e\u0589\u05be\u05c3\u060c\u061b\u061f\u06d4\u0964\u0965\u104a\u104b\u1362\u1363\u17d4\u17d5",
+                     "?.-.,;?...,..,..")),
           **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789"))}  # fmt: skip
 _BLANKS = ((9, 13), (0x20, 0x20), (0x85, 0x85), (0xA0, 0xA0), (0x2000, 0x200A), (0x2028, 0x2029), (0x202F, 0x202F),
            (0x205F, 0x205F), (0x3000, 0x3000))

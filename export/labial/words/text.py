@@ -31,7 +31,7 @@ blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captai
 wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
 mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
 facade fah sod;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please
-thx thanks;nato nay toe;uber oober;xbox ex box;gmail gee mail;youtube you tube;android an droid;nvidia en vidia
+thx thanks;nato nay toe;uber oober;xbox ex box;gmail jee mail;gee jee;youtube you tube;android an droid;nvidia en vidia
 mysql my sequel;nginx engine ex;kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may
 bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control
 airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -
@@ -55,7 +55,6 @@ _SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "repres
 _PLACES = frozenset("""seat seats row gate gates room apartment apt flat suite unit bus exit hall platform section track
     terminal locker fig figure chapter part""".split())
 _SCALES = "hundred thousand million billion trillion".split()
-
 #: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
 nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
@@ -72,7 +71,6 @@ M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenhei
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
 #: Units behind which another number and its unit belong to the same length or duration, and what marks them.
 _PARTED = {"foot|feet": "f", "hour_": "h"}
-
 #: Capitals that are read letter by letter although a word could look so, and words of two letters, of three that begin
 #: with a vowel, and others that are words although they do not look so.
 _SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NEA GRE SLA COO NIH ASAP UCLA USDA USAF
@@ -81,9 +79,9 @@ _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR O
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
     ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA AMY AVA BYE EVA IAN MIA LYNX MYTH NYMPH
     QUEUE""".split())
-#: Small letters without a vowel that are not read one by one: sounds and parts of words.
+#: Letters without a vowel, not all capitals, that are not read one by one: sounds and parts of words.
 _SOUNDS = frozenset("""hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th
-    nd""".split())
+    nd mc ng""".split())
 _SMALL = re.compile(r"(?!.*(.)\1\1)[b-df-hj-np-tv-xz]{2,5}$")
 #: Words unless the word before is not in capitals.
 _SHOUTED = frozenset(["AM", "IT", "US", "WHO"])
@@ -95,7 +93,6 @@ _CODAS = frozenset("""B C D F G H K L M N P R S T W X Z BB BT CH CK CT DD FF FT 
 _PAIRS = frozenset("""AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE
     IOU AYO YA""".split())
 _LAST_PAIRS = frozenset("AY EA EE EY IE OE OO OU OY UE UY".split())
-
 #: Stage directions: the beginnings of verbs, behind which s, es or ing stands, and words that stand alone.
 _VERBS = """applaud beam blink blush breath burp chuckl clap clapp clear cough cri cry exhal frown gasp giggl
     glanc grin grinn groan gulp hum humm inhal laugh mumbl mutter nod nodd paus pout scream shout shrug shrugg sigh sing
@@ -333,9 +330,12 @@ class _Reader:
         if after == "place" and (len(run) == 1 or small in ("and", "or", "to")):
             context.after = "place"
         date = _date_of(run)
-        number = _roman(run, named or after == "place")
+        owner = _owner(run)
+        number = _roman(owner, named or after == "place")
         if number:
             said.say(" ".join(numbers.cardinal(str(number))), place)
+            if owner != run:
+                said.add_s(place + len(owner) - 1)
         elif named and small in _STREETS:
             said.say_tail(_STREETS[small], place)
             context.after = _STREETS[small]
@@ -376,7 +376,7 @@ class _Reader:
         elif self.address and before == "." and self._is_spelt_in_address(small):
             said.say_names(small, range(place, place + len(small)), False)
         elif self._is_spelt(run, before, follows, shouting):
-            letters = _owner(run) if run == small else _capitals(run)
+            letters = _capitals(run) or owner
             said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
         else:
             self._spell(run, place)
@@ -430,10 +430,10 @@ class _Reader:
         """Whether letters are read one by one."""
         if len(run) == 1:
             return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+/]", before)) or follows != BLANK))
-        if run.islower():
-            return _is_spelt_small(_owner(run))
         letters = _capitals(run)
-        if not (letters.isalpha() and letters.isupper() and 2 <= len(letters) <= 5):
+        if not letters:
+            return _is_spelt_small(_owner(run).lower())
+        if not 2 <= len(letters) <= 5:
             return False
         if "&" in (before, follows) and letters == run:
             return True
@@ -463,18 +463,20 @@ def _roman(run: str, is_named: bool) -> int:
 
 
 def _owner(run: str) -> str:
-    """Small letters without the 's behind them."""
-    return run[:-2] if run.endswith("'s") else run
+    """Letters without the 's behind them."""
+    return run[:-2] if len(run) > 2 and run.lower().endswith("'s") else run
 
 
 def _is_spelt_small(letters: str) -> bool:
-    """Whether small letters are read one by one: two to five without a vowel, none of them three times in a row."""
+    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three
+    times in a row."""
     return letters not in _SOUNDS and bool(_SMALL.match(letters))
 
 
 def _capitals(run: str) -> str:
-    """A run without the s or 's behind it."""
-    return re.sub("(?<=.)'?s$", "", run)
+    """The capitals that a run consists of, but for an s or 's behind them; nothing for other runs."""
+    found = re.fullmatch("([A-Z]+)(?:'?s)?", run)
+    return found[1] if found else ""
 
 
 def is_pronounceable(letters: str) -> bool:
