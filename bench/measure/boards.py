@@ -65,7 +65,7 @@ def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
     folder = bench.build / board.preset
     run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
          f"-DLABIAL_BOARD={board.preset}", "-DCMAKE_BUILD_TYPE=Release",
-         "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF",
+         "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_WERROR=ON",
          f"-DLABIAL_BENCH_SECONDS={SECONDS}"])
     run(["cmake", "--build", folder, "--parallel", "2"])
     return json.loads((folder / "bench" / "images.json").read_text(encoding="utf-8"))
