@@ -351,7 +351,7 @@ def test_render_has_the_same_frames() -> None:
             continue
         for name in (lambda phoneme: phoneme, lambda phoneme: labial.speech_en.phonemes[phoneme]):
             motion = labial.render([(name(phoneme), milliseconds) for _, phoneme, milliseconds in pushes])
-            assert isinstance(motion, list) and all(type(row) is tuple and len(row) == 13 for row in motion)
+            assert isinstance(motion, list) and all(isinstance(row, tuple) and len(row) == 13 for row in motion)
             assert (np.array(motion).reshape(-1, 13) == conformance_frames()[script["name"]]).all()
         played += 1
     assert played > 10

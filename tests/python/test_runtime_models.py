@@ -248,7 +248,7 @@ def test_the_type_is_the_same_without_numpy() -> None:
     script = "import labial, sys\nsys.modules['numpy'] = None\nprint(labial.render([('AA', 100)]))\n"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     motion = labial.render([("AA", 100)])
-    assert done.stdout == f"{motion}\n" and isinstance(motion, list) and type(motion[0]) is tuple
+    assert done.stdout == f"{motion}\n" and isinstance(motion, list) and isinstance(motion[0], tuple)
     assert np.array(motion, "int16").shape == (5 + 12, 13)
 
 
