@@ -173,11 +173,7 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int32_t wa
     const int32_t change = labial_sub(wanted, last);
     if (is_below(change, output->deadband) && wanted != labial_rig_resting(output))
         return last;
-    if (output->slew > 0 && change > output->slew)
-        return labial_add(last, output->slew);
-    if (output->slew > 0 && change < -output->slew)
-        return labial_sub(last, output->slew);
-    return wanted;
+    return output->slew > 0 ? labial_add(last, labial_clamp(change, output->slew)) : wanted;
 }
 
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values)

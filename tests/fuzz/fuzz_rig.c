@@ -60,7 +60,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (input.curved >> OUTPUTS & 1u)
             REQUIRE(labial_rig_apply_visemes(&rig, frames, input.shares, values) == LABIAL_OK);
         else
-            REQUIRE(labial_rig_apply_ahead(&rig, frames, count, values, changes) == LABIAL_OK);
+            REQUIRE(labial_rig_apply_visemes_ahead(&rig, frames, count == 1 ? input.shares : NULL, count, values,
+                                                   changes) == LABIAL_OK);
         for (unsigned i = 0; i < OUTPUTS && checked == LABIAL_OK; i++) {
             const labial_rig_output_t *output = &outputs[i];
             const int64_t change = (int64_t)values[i] - input.values[i];
