@@ -207,8 +207,8 @@ static unsigned last_character(const char *text, size_t *size)
     return code;
 }
 
-/* Whether a text ends in punctuation behind which voices pause, of any script whose punctuation is known; quotes and
- * brackets may follow it. */
+/* Whether a text ends in punctuation behind which voices pause, of any script whose punctuation is known; quotes,
+ * brackets and signs that are not read may follow it. */
 static int ends_in_punctuation(const char *text, size_t size)
 {
     while (size > 0u) {
@@ -218,6 +218,7 @@ static int ends_in_punctuation(const char *text, size_t size)
         case ')':
         case ']':
         case ' ':
+        case NO_CHARACTER:
             break;
         case ',':
         case '.':
@@ -311,7 +312,7 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
     span->open = end == LABIAL_WORDS_NO_END || end == start;
     span->spelt = 0;
     span->stops = (uint8_t)ends_in_punctuation(text, size);
-    if (ends && !are_equal(start, ends, count)) {
+    if (ends && !span->open && !are_equal(start, ends, count)) {
         span->spelt = 1;
         reach_characters(stream->model, span, ends);
     }

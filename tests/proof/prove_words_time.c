@@ -23,6 +23,12 @@ int labial_words_read_next(const labial_words_model_t *any, const labial_words_o
     return LABIAL_OK;
 }
 
+void labial_words_advance(labial_words_place_t *here)
+{
+    //@ assert at_byte: here->at < here->size;
+    here->code = any_unsigned;
+}
+
 /* Any state that calls leave behind: no word has more phonemes than there is room for. */
 static void any_state(const labial_words_own_t *own)
 {
