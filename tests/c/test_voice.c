@@ -241,6 +241,8 @@ TEST_AFTER(begin, words_are_those_of_the_library)
     assert_int_equal(labial_voice_end(&voice, 0), 3300); /* two phonemes that nobody knows */
     tell_one("...", 3300, -1);
     assert_int_equal(labial_voice_end(&voice, 0), 3300);
+    tell_one("hum", 3320, 3320); /* its end is not known, either */
+    assert_in_range(labial_voice_end(&voice, 0), 3400, 3700);
     tell_one("hum", 3400, 5000);
     assert_int_equal(labial_voice_end(&voice, 0), 5000);
 }
