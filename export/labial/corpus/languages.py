@@ -20,11 +20,10 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 from labial.core import espeak
 from labial.core.words import read
 from labial.corpus import signs
-from labial.corpus.phonesets import SPEECH
+from labial.corpus.phonesets import SPEECH, VOWELS
 from labial.errors import LabialError, apt, missing, pip
 
 _logger = logging.getLogger("labial")
-
 #: Words that are said to be unspeakable, at most.
 _SAID_MOST = 1000
 #: Words of which a sentence for espeak-ng has, at most.
@@ -52,7 +51,7 @@ _DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
 #: Languages of India whose affricates espeak-ng writes as palatal stops, with or without breath behind them.
 _INDIAN = frozenset("as bn bpy gu hi kn kok ml mr ne or pa sd te ur".split())
 _AFFRICATES = {"c": "tʃ", "ɟ": "dʒ"}
-_VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+_VOWELS = frozenset(VOWELS.split())
 
 _INITIALS = {"b": "B", "p": "P", "m": "M", "f": "F", "d": "D", "t": "T", "n": "N", "l": "L", "g": "G", "k": "K",
              "h": "HH", "j": "JH", "q": "CH", "x": "SH", "zh": "JH", "ch": "CH", "sh": "SH", "r": "R", "z": "D Z",

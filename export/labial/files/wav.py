@@ -12,8 +12,6 @@ from labial.errors import DataError
 ERRORS = (wave.Error, EOFError, RuntimeError)
 #: Samples of each channel that are read at once.
 _BLOCK = 65_536
-
-
 #: Samples, from which on a head says that whoever wrote it did not know their number.
 _UNKNOWN = 0x7FFFF000 // 8
 
