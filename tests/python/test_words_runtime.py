@@ -223,8 +223,8 @@ def test_languages_have_their_syllables_and_closures(language: str, sentence: st
 def test_words_keep_their_phonemes_at_the_punctuation_of_their_script() -> None:
     """Words that touch it are those that are looked up, without it."""
     for language, text in (("hi", "प्रेम।"), ("mr", "प्रेम।"), ("ne", "प्रेम॥"), ("bn", "প্রেম।"), ("pa", "ਪਿਆਰ।"),
-                           ("ar", "سلام،"), ("ar", "سلام؟"), ("fa", "سلام؛"), ("ur", "ہیں۔"), ("hy", "Հայ։"), ("am", "ሰላም።"),
-                           ("my", "မြန်မာ။"), ("my", "မြန်မာ၊"), ("el", "γεια\u037e")):
+                           ("ar", "سلام،"), ("ar", "سلام؟"), ("fa", "سلام؛"), ("ur", "ہیں۔"), ("hy", "Հայ։"),
+                           ("am", "ሰላም።"), ("my", "မြန်မာ။"), ("my", "မြန်မာ၊"), ("el", "γεια\u037e")):
         found = labial.phonemes(text, language=language)
         assert found and found == labial.phonemes(text[:-1], language=language), (language, text)
 
