@@ -192,9 +192,9 @@ void labial_voice_remove_utterance(labial_voice_t *voice, unsigned position)
  * told, but for the longest pause, until something is told in it or before it. */
 static void note_told(labial_voice_utterance_t *utterance, uint32_t begin, uint32_t end)
 {
-    if (begin < utterance->over) {
+    if (begin < utterance->pause + utterance->paused) {
         utterance->pause = utterance->paused = 0;
-    } else if (begin - utterance->over > utterance->paused) {
+    } else if (begin > utterance->over && begin - utterance->over > utterance->paused) {
         const uint32_t paused = begin - utterance->over;
         utterance->pause = utterance->over;
         utterance->paused = (uint16_t)(paused < LONGEST_PAUSE ? paused : LONGEST_PAUSE);

@@ -377,6 +377,7 @@ def test_numbers_are_written_out(monkeypatch: pytest.MonkeyPatch, caplog: pytest
     assert asked == [(1984, "en", "year"), (101, "en", "cardinal"), (2300.5, "en", "cardinal")]
     words = labial.phonemes("one hundred one")
     assert got == [*labial.phonemes("in"), *words, *words, *labial.phonemes("or"), *words]
+    assert labial.phonemes("2024-05-03 1,5", numbers=True) == labial.phonemes("2024-05-03 1,5") and len(asked) == 3
     for _ in range(2):  # a stream goes on
         assert labial.phonemes("13", numbers=True) == labial.phonemes("13")
     assert caplog.messages == ["num2words cannot write '13' in the language 'en': such digits are read as without "
@@ -402,7 +403,7 @@ def test_numbers_are_written_out_with_their_signs(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, "num2words", Stub)
     monkeypatch.setattr(spoken, "_unwritten", set())
     for text, same in (("$25", "zwei $"), ("25 %", "zwei Prozent"), ("25%", "zwei Prozent"), ("-25", "minus zwei"),
-                       ("25", "zwei")):
+                       ("25", "zwei"), ("2,5 %", "2,5 Prozent")):
         assert labial.phonemes(text, language="de", numbers=True) == labial.phonemes(same, language="de"), text
     with labial.Voice(language="hi", numbers=True) as voice:
         voice.say("25", 0.1, 0.6)

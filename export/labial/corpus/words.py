@@ -241,12 +241,12 @@ def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence
         import num2words  # noqa: F401
     known: Dict[str, Sequence[str]] = {}
     for item in stretches:
-        if not signs.NUMBER.fullmatch(item):
-            continue
         text = item if how.language == ENGLISH else signs.worded(item, how.language)
-        digits = _NUMBER.search(text)
-        written = digits and _written_out(digits[0], how.language)
-        if digits and written is not None:
+        digits = re.search(r"-?\d[\d.,]*", text)
+        if not digits or not signs.NUMBER.fullmatch(item) or not _NUMBER.fullmatch(digits[0]):
+            continue
+        written = _written_out(digits[0], how.language)
+        if written is not None:
             known[item] = _spoken(f"{text[: digits.start()]} {written} {text[digits.end() :]}".split(), how)
     return known
 
