@@ -15,6 +15,9 @@
 /* Milliseconds by which rounding may move a blank. */
 #define ROUNDING 20u
 
+/* Milliseconds of a pause that are kept. */
+#define LONGEST_PAUSE 0xffffu
+
 const uint16_t labial_voice_blanks[LABIAL_VOICE_BLANKS][2] = {
     { 0x09, 0x0d },     { 0x1c, 0x20 },     { 0x85, 0x85 },     { 0xa0, 0xa0 },     { 0x1680, 0x1680 },
     { 0x2000, 0x200a }, { 0x2014, 0x2015 }, { 0x2025, 0x2026 }, { 0x2028, 0x2029 }, { 0x202f, 0x202f },
@@ -113,24 +116,32 @@ void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *uttera
     link_back(voice, utterance, at + places, places);
 }
 
+/* How much of the time from `from` to `to` lies between `begin` and `end`. */
+static uint32_t shared_time(uint32_t from, uint32_t to, uint32_t begin, uint32_t end)
+{
+    if (begin < from)
+        begin = from;
+    if (end > to)
+        end = to;
+    return end > begin ? end - begin : 0u;
+}
+
 uint32_t labial_voice_told(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t from,
                            uint32_t to)
 {
     const uint32_t limit = labial_voice_limit(utterance);
-    uint32_t at = labial_voice_find(voice, utterance, from), sum = utterance->over > from ? utterance->over - from : 0u;
+    uint32_t at = labial_voice_find(voice, utterance, from);
+    uint32_t sum = shared_time(from, to, 0, utterance->pause) +
+                   shared_time(from, to, utterance->pause + utterance->paused, utterance->over);
     if (at > utterance->first)
         at = labial_voice_before(voice, utterance, at);
     for (; at < limit && voice->items[at].start < to; at = labial_voice_after(voice, at)) {
         const labial_voice_place_t *const item = voice->items + at;
         const uint32_t after = labial_voice_after(voice, at);
-        const uint32_t start = item->start > from ? item->start : from;
         uint32_t until = item->end;
         if (after < limit && voice->items[after].start < until)
             until = voice->items[after].start;
-        if (until > to)
-            until = to;
-        if (until > start)
-            sum += until - start;
+        sum += shared_time(from, to, item->start, until);
     }
     return sum;
 }
@@ -177,6 +188,21 @@ void labial_voice_remove_utterance(labial_voice_t *voice, unsigned position)
         voice->used = 0;
 }
 
+/* Notes that an utterance was told from `begin` to `end`, which is forgotten: what lies between such times counts as
+ * told, but for the longest pause, until something is told in it or before it. */
+static void note_told(labial_voice_utterance_t *utterance, uint32_t begin, uint32_t end)
+{
+    if (begin < utterance->pause + utterance->paused) {
+        utterance->pause = utterance->paused = 0;
+    } else if (begin > utterance->over && begin - utterance->over > utterance->paused) {
+        const uint32_t paused = begin - utterance->over;
+        utterance->pause = utterance->over;
+        utterance->paused = (uint16_t)(paused < LONGEST_PAUSE ? paused : LONGEST_PAUSE);
+    }
+    if (end > utterance->over)
+        utterance->over = end;
+}
+
 /* Forgets the first items of the first utterance, up to a blank where they are characters. */
 static void forget_items(labial_voice_t *voice, labial_voice_utterance_t *utterance, int64_t limit)
 {
@@ -190,7 +216,7 @@ static void forget_items(labial_voice_t *voice, labial_voice_utterance_t *uttera
         if (after == last || end >= limit || follows >= limit)
             return;
         if (utterance->kind != LABIAL_VOICE_CHARACTERS || labial_voice_is_blank_item(voice, at)) {
-            utterance->over = end;
+            note_told(utterance, voice->items[utterance->first].start, end);
             utterance->places -= after - utterance->first;
             utterance->first = after;
         }

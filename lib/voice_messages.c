@@ -210,7 +210,8 @@ static int add_message(labial_voice_t *voice, labial_voice_utterance_t *utteranc
         utterance->kind = message->kind;
         utterance->told = 0;
         utterance->joined = 0;
-        utterance->over = utterance->highest = 0;
+        utterance->over = utterance->pause = utterance->highest = 0;
+        utterance->paused = 0;
         voice->stale = 1;
     }
     utterance->base = base;

@@ -255,7 +255,7 @@ int64_t labial_voice_end(labial_voice_t *voice, unsigned position)
         uint32_t until = 0;
         if (utterance->kind == LABIAL_VOICE_AZURE || utterance->kind == LABIAL_VOICE_POLLY)
             until = last->start + LAST_VISEME;
-        else if (utterance->kind == LABIAL_VOICE_WORDS && last->end == LABIAL_VOICE_OPEN)
+        else if (utterance->kind == LABIAL_VOICE_WORDS && (last->end == LABIAL_VOICE_OPEN || last->end == last->start))
             until = last->start + voice->lasts(voice, utterance);
         if (until > end)
             end = until;

@@ -187,16 +187,38 @@ static uint32_t shifted(const labial_words_t *stream, uint32_t time)
     return moved < 0 ? 0u : moved > 0xffffffff ? 0xffffffffu : (uint32_t)moved;
 }
 
-/* Whether a text ends in punctuation behind which voices pause; quotes and brackets may follow it. */
+/* The last character of a text, as the rules see it; `size` becomes what is before it. */
+static unsigned last_character(const char *text, size_t *size)
+{
+    labial_words_place_t here;
+    size_t at = *size - 1u;
+    unsigned code = (unsigned char)text[at];
+    if (code >= 0x80u) {
+        while (at > 0u && ((unsigned char)text[at] & 0xc0u) == 0x80u)
+            at--;
+        memset(&here, 0, sizeof here);
+        here.text = (const unsigned char *)text;
+        here.size = *size;
+        here.at = at;
+        labial_words_advance(&here);
+        code = here.code;
+    }
+    *size = at;
+    return code;
+}
+
+/* Whether a text ends in punctuation behind which voices pause, of any script whose punctuation is known; quotes,
+ * brackets and signs that are not read may follow it. */
 static int ends_in_punctuation(const char *text, size_t size)
 {
     while (size > 0u) {
-        switch (text[--size]) {
+        switch (last_character(text, &size)) {
         case '"':
         case '\'':
         case ')':
         case ']':
         case ' ':
+        case NO_CHARACTER:
             break;
         case ',':
         case '.':
@@ -287,10 +309,10 @@ static int take(labial_words_t *stream, const char *text, size_t size, uint32_t 
         return LABIAL_OK;
     }
     span->end = end;
-    span->open = end == LABIAL_WORDS_NO_END;
+    span->open = end == LABIAL_WORDS_NO_END || end == start;
     span->spelt = 0;
     span->stops = (uint8_t)ends_in_punctuation(text, size);
-    if (ends && !are_equal(start, ends, count)) {
+    if (ends && !span->open && !are_equal(start, ends, count)) {
         span->spelt = 1;
         reach_characters(stream->model, span, ends);
     }

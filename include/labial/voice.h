@@ -293,8 +293,10 @@ struct labial_voice_utterance {
     uint32_t places;   /* that its items take */
     uint32_t end;      /* of its items, milliseconds from the origin */
     uint32_t over;     /* up to which items were forgotten */
+    uint32_t pause;    /* where the longest time before `over` begins of which nothing was told, */
     uint32_t highest;  /* key */
     uint32_t serial;   /* its number */
+    uint16_t paused;   /* and its milliseconds */
     uint8_t kind;      /* that counts */
     uint8_t tail;      /* places of the last item */
     uint8_t queued;    /* it began by itself: behind the one before it */

@@ -177,7 +177,8 @@ int labial_words_init(labial_words_t *stream, const labial_words_model_t *model,
 int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own);
 
 /*
- * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END.
+ * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END. A
+ * word that ends where it begins, as of services that tell beginnings alone, has no known end either.
  * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
  * labial_words_end(). A gap under LABIAL_WORDS_PAUSE, or under LABIAL_WORDS_COMMA behind punctuation, belongs to the word
  * before it, a longer one is silence. A word that ends after the next one begins is cut off there. A text that is silent

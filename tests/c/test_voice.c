@@ -241,6 +241,8 @@ TEST_AFTER(begin, words_are_those_of_the_library)
     assert_int_equal(labial_voice_end(&voice, 0), 3300); /* two phonemes that nobody knows */
     tell_one("...", 3300, -1);
     assert_int_equal(labial_voice_end(&voice, 0), 3300);
+    tell_one("hum", 3320, 3320); /* its end is not known, either */
+    assert_in_range(labial_voice_end(&voice, 0), 3400, 3700);
     tell_one("hum", 3400, 5000);
     assert_int_equal(labial_voice_end(&voice, 0), 5000);
 }
@@ -939,6 +941,39 @@ TEST_AFTER(begin, joined_messages_begin_again_after_what_is_forgotten)
     plan_from = 11000;
     assert_non_null(strstr(known(), "11700-11950 M, 11950-12150 S, 12150-12250 S"));
     plan_from = 0;
+}
+
+/* Messages of 1,010 ms at these seconds play until `until` ms, then one at 2 s comes: whether it begins again. */
+static int late_message_begins_again(const uint8_t *seconds, unsigned count, uint64_t until)
+{
+    message.times = LABIAL_VOICE_JOINED;
+    for (unsigned i = 0; i < count; i++) {
+        item("M", 1000 * seconds[i], 1000 * seconds[i] + 1010);
+        assert_int_equal(tell(), LABIAL_OK);
+    }
+    play(until);
+    item("S", 2000, 2900);
+    assert_int_equal(tell(), LABIAL_OK);
+    return voice.utterances[0].base > 0u;
+}
+
+TEST_AFTER(begin, what_comes_after_its_time_was_not_told)
+{
+    static const uint8_t later[] = { 3, 5, 10 }, around[] = { 0, 1, 3, 4, 10 }, far[] = { 100, 110 };
+    assert_int_equal(late_message_begins_again(later, 3, 9000), 0);
+    assert_true(voice.utterances[0].over == 4010 && voice.utterances[0].paused == 3000);
+    item("T", 2000, 2800); /* now it was told, and is forgotten, too */
+    assert_int_equal(tell(), LABIAL_OK);
+    assert_true(voice.utterances[0].over == 4010 && voice.utterances[0].paused == 0);
+    assert_int_equal(voice.utterances[0].base, 11010 * MS);
+    assert_int_equal(labial_voice_begin(&voice, 20000, 0), LABIAL_OK);
+    play(20000);
+    assert_int_equal(late_message_begins_again(around, 5, 29000), 0);
+    assert_true(voice.utterances[0].pause == 2010 && voice.utterances[0].paused == 990);
+    assert_int_equal(labial_voice_begin(&voice, 40000, 0), LABIAL_OK);
+    play(40000);
+    assert_int_equal(late_message_begins_again(far, 2, 155000), 0);
+    assert_int_equal(voice.utterances[0].paused, 65535);
 }
 
 TEST_AFTER(begin, a_key_replaces_what_was_told_of_it)

@@ -95,15 +95,17 @@ TEST(words_share_their_time_as_by_the_reference)
 /* Would catch a pause at a comma through which the word before it is drawn out, and gaps that every word has. */
 TEST(gaps_behind_punctuation_are_pauses_sooner)
 {
-    static const char *const texts[] = { "hello,",  "hello.",  "hello!\"", "hello?)", "hello;'",
-                                         "hello: ", "hello,]", "hello",    "hel,lo",  "hello-" };
+    static const char *const texts[] = { "hello,",        "hello.",         "hello!\"", "hello?)", "hello;'",
+                                         "hello: ",       "hello,]",        "hello।",   "hello؟",  "hello,”",
+                                         "hello！",       "hello।)",        "hello",    "hel,lo",  "hello-",
+                                         "hello\xc3\xa9", "hello,\xcc\x81", "hello”",   "hel।lo" };
     for (unsigned i = 0; i < sizeof texts / sizeof *texts; i++) {
         for (uint32_t gap = 79; gap <= 80; gap++) {
             spoken_t spoken = { 0 };
             begin(0);
             say(&spoken, texts[i], 100, 400);
             say(&spoken, "world", 400 + gap, 800);
-            assert_int_equal(until(&spoken, spoken.count), i < 7 && gap == 80 ? 400 : 400 + gap);
+            assert_int_equal(until(&spoken, spoken.count), i < 12 && gap == 80 ? 400 : 400 + gap);
         }
     }
     spoken_t spoken = { 0 };
@@ -111,6 +113,7 @@ TEST(gaps_behind_punctuation_are_pauses_sooner)
     say(&spoken, "hello", 100, 400);
     say(&spoken, ",", 410, 410); /* told by itself */
     say(&spoken, "'\"", 410, 410);
+    say(&spoken, "\x80\x80", 410, 410); /* no UTF-8 */
     say(&spoken, "world", 500, 800);
     assert_int_equal(until(&spoken, spoken.count), 400);
 }
@@ -258,6 +261,32 @@ TEST(ends_that_are_not_known_are_guessed)
     say(&spoken, "banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
     flush(&spoken);
     assert_int_equal(until(&spoken, spoken.count), 0xffffffffu);
+}
+
+/* Would catch words that vanish since their service tells no more than where they begin. */
+TEST(words_of_no_length_have_no_known_end)
+{
+    static const uint32_t ends[5] = { 500, 500, 500, 500, 500 };
+    spoken_t open = { 0 }, none = { 0 };
+    begin(0);
+    say(&open, "hello", 500, LABIAL_WORDS_NO_END);
+    say(&open, "shake", 700, LABIAL_WORDS_NO_END);
+    flush(&open);
+    begin(0);
+    say(&none, "hello", 500, 500);
+    say(&none, "shake", 700, 700);
+    flush(&none);
+    assert_memory_equal(&none, &open, sizeof none);
+    assert_in_range(until(&none, none.count), 900, 1300);
+    memset(&open, 0, sizeof open);
+    memset(&none, 0, sizeof none);
+    begin(0);
+    say(&open, "shake", 500, LABIAL_WORDS_NO_END);
+    flush(&open);
+    begin(0);
+    assert_int_equal(labial_words_push_characters(&stream, "shake", 5, 500, ends, 5), LABIAL_OK);
+    flush(&none);
+    assert_memory_equal(&none, &open, sizeof none);
 }
 
 /* Would catch silent texts that cut or lengthen words whose ends are known. */

@@ -102,6 +102,7 @@ static void any_utterance(labial_voice_utterance_t *utterance, uint32_t first, u
     utterance->limit = (int64_t)any_uint32 << 31 | any_uint32;
     utterance->end = (uint32_t)Frama_C_interval(0, LABIAL_VOICE_LATEST);
     utterance->over = (uint32_t)Frama_C_interval(0, LABIAL_VOICE_LATEST);
+    utterance->pause = (uint32_t)Frama_C_interval(0, LABIAL_VOICE_LATEST);
     utterance->first = first;
     utterance->places = items * each;
     utterance->tail = (uint8_t)each;

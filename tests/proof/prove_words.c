@@ -74,8 +74,8 @@ int prove_words_characters(void)
 
 /* ---- Words in time ----------------------------------------------------------------------------------------------- */
 
-/* Any texts, times and calls in any order, in streams of any offset; with stand-ins for words_text.c, of whose
- * words nothing is assumed but their number of phonemes. */
+/* Any texts, times and calls in any order, in streams of any offset; with words_characters.c, which tells how texts
+ * end, and stand-ins for words_text.c, of whose words nothing is assumed but their number of phonemes. */
 
 #define PHONEMES 256 /* what a byte can tell */
 
@@ -114,6 +114,7 @@ int prove_words_time(void)
     labial_words_t *any;
     unsigned phoneme;
     uint32_t lasts;
+    any_int = prove_words_characters(); /* all of that file is called */
     FILL(milliseconds);
     FILL(classes);
     FILL(model.filler);

@@ -316,13 +316,17 @@ def test_misuse() -> None:
 def test_a_server_cannot_fill_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """So much ahead of the sound is too much, and what was known stays known."""
     monkeypatch.setattr("labial.runtime.voice.PLACES", 500)
-    with labial.Voice() as voice:
-        voice.feed([{"word": "a", "start": k / 100, "end": k / 100} for k in range(10)])
-        before = played(voice, 0, 0.1)
+    with labial.Voice() as voice, labial.Voice() as other:
+        found = []
+        for one in (voice, other):
+            one.feed([{"word": "a", "start": k / 100, "end": k / 100} for k in range(10)])
+            found.append(played(one, 0, 0.1))
         with pytest.raises(labial.errors.LabialError, match="there is room for 500"):
             for k in range(500):
                 voice.say("a", k + 1, k + 1)
-        assert before + played(voice, 0.12, 0.3) == motion(said([("a", k / 100, k / 100) for k in range(10)]), 16)
+                other.say("a", k + 1, k + 1)
+        found = [shown + played(one, 0.12, 1.2) for shown, one in zip(found, (voice, other))]
+        assert found[0] == found[1] and len(set(found[0])) > 30
     characters = {"normalizedAlignment": {"chars": ["a"] * 501, "charStartTimesMs": list(range(501)),
                                           "charDurationsMs": [1] * 501}}
     with labial.Voice() as voice, pytest.raises(labial.errors.LabialError, match="there is room for 500"):
@@ -362,12 +366,67 @@ def test_pronunciations_and_labels() -> None:
         assert played(voice, 0, 1) == motion([("SIL", 100), ("B", 400), ("AA", 200)], 51)
 
 
+@pytest.mark.skipif(not shutil.which("espeak-ng"), reason="no espeak-ng: install the Debian package")
+def test_characters_of_another_language() -> None:
+    """The danda ends a word of Hindi, and is no part of it."""
+    text = "प्रेम। बाबा।"
+    starts = [100.0 * k for k in range(len(text))]
+    timings = labial.character_timings(text, starts, [start + 100.0 for start in starts], language="hi")
+    assert [label for label, _ in timings if label != "SIL"] == labial.phonemes("प्रेम बाबा", language="hi")
+    with labial.Voice("elevenlabs", language="hi") as voice:
+        voice.feed({"alignment": {"characters": list(text), "character_start_times_seconds": [s / 1000 for s in starts],
+                                  "character_end_times_seconds": [s / 1000 + 0.1 for s in starts]}})
+        assert played(voice, 0, 2) == motion(timings, 101)
+
+
+def test_words_that_end_where_they_begin_are_said() -> None:
+    """As those whose end is not known; also the last one, behind whose beginning nothing was told."""
+    words = [{"word": "Hello", "start": 0.5, "end": 0.5}, {"word": "world!", "start": 0.9, "end": 0.9}]
+    known = labial.word_timings([("Hello", 500, None), ("world!", 900, None)])
+    assert labial.read_timings(words) == known
+    with labial.Voice() as voice:
+        for word in words:
+            voice.say(word["word"], word["start"], word["end"])
+        voice.finish()
+        end = sum(length for _, length in known) / 1000
+        assert played(voice, 0, end) == motion(known, round(50 * end) + 1)
+        assert not voice.done
+        played(voice, end, end + 0.6)
+        assert voice.done
+
+
+@pytest.mark.parametrize("late", [3.0, 5.0, 6.3, 7.0])
+@pytest.mark.parametrize("first", [0.0, 1.2], ids=["the first", "one between others"])
+def test_a_message_that_comes_late_moves_nothing(late: float, first: float) -> None:
+    """However long its time is over: nothing was told of that."""
+
+    def message(text: str, start: float) -> Dict[str, Any]:
+        starts = [round(start + 0.05 * k, 2) for k in range(len(text))]
+        return {"alignment": {"characters": list(text), "character_start_times_seconds": starts,
+                              "character_end_times_seconds": [round(start + 0.05, 2) for start in starts]}}
+
+    before = [message("Maybe people ", 0.1)] if first else []
+    others = [message("prefer my map ", 2.8), message("Then we went home ", 4.6)]
+    found = []
+    for moment in (0.0, late):
+        with labial.Voice("elevenlabs") as voice:
+            for other in [*before, *others]:
+                voice.feed(other)
+            shown = played(voice, 0, moment)
+            voice.feed(message("because Bob and Pam ", 1.6))
+            voice.finish()
+            shown += played(voice, moment, 12)
+            found.append(max(k for k, frame in enumerate(shown) if any(frame)))
+    assert abs(found[1] - found[0]) <= 1
+
+
 @pytest.mark.parametrize("options", [{"language": "de"}, {"numbers": True}])
 def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     """espeak-ng and num2words are asked for each word once, however many messages follow it."""
     asked: List[str] = []
     monkeypatch.setattr("labial.corpus.words.pronounced", lambda words, language: asked.extend(words) or [
         None if word == "?" else ["AA", "M"] for word in words])
+    monkeypatch.setitem(sys.modules, "num2words", None if "language" in options else sys)
     monkeypatch.setattr("labial.corpus.words._written_out", lambda digits, language: asked.append(digits) or "two")
     with labial.Voice(**options) as voice:
         for k in range(5):

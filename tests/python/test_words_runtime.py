@@ -220,6 +220,54 @@ def test_languages_have_their_syllables_and_closures(language: str, sentence: st
 
 
 @needs_espeak
+def test_words_keep_their_phonemes_at_the_punctuation_of_their_script() -> None:
+    """Words that touch it are those that are looked up, without it."""
+    for language, text in (("hi", "प्रेम।"), ("mr", "प्रेम।"), ("ne", "प्रेम॥"), ("bn", "প্রেম।"), ("pa", "ਪਿਆਰ।"),
+                           ("ar", "سلام،"), ("ar", "سلام؟"), ("fa", "سلام؛"), ("ur", "ہیں۔"), ("hy", "Հայ։"),
+                           ("am", "ሰላም።"), ("my", "မြန်မာ။"), ("my", "မြန်မာ၊"), ("el", "γεια\u037e")):
+        found = labial.phonemes(text, language=language)
+        assert found and found == labial.phonemes(text[:-1], language=language), (language, text)
+
+
+@needs_espeak
+def test_affricates_of_india() -> None:
+    """Which espeak-ng writes as palatal stops; those of Hungarian and Turkish are such stops."""
+    for language, text in (("hi", "चाँद जान छत झंडा"), ("mr", "चाँद छत झंडा"), ("ne", "चाँद जान छत झंडा"),
+                           ("ur", "چاند جان چھت"), ("bn", "চাঁদ জান ছাতা ঝড়"), ("pa", "ਚੰਦ ਜਾਨ ਛੱਤ"), ("gu", "ચાંદ જાન છત")):
+        for word in text.split():
+            assert labial.phonemes(word, language=language)[0] in ("CH", "JH"), (language, word)
+    assert labial.phonemes("जान", language="hi") == "JH AE N".split()
+    assert labial.phonemes("gyár tyúk", language="hu")[::3] == ["G", "K"]
+
+
+@needs_espeak
+def test_signs_are_said_in_the_language(caplog: pytest.LogCaptureFixture) -> None:
+    """As its words are, with the number they stand at; what is said of none is silent, and logged once."""
+    for language, text, same in (
+            ("de", "20 %", "20 Prozent"), ("de", "20%", "20 Prozent"), ("de", "５％", "5 Prozent"),
+            ("de", "5 €", "5 Euro"), ("de", "5,50 €", "5,50 Euro"), ("de", "$5", "5 $"), ("de", "A & B", "A und B"),
+            ("de", "20 °C", "20 Grad C"), ("de", "20°C", "20 Grad C"), ("de", "20℃", "20 Grad C"),
+            ("de", "−5", "minus 5"), ("de", "1+1=2", "1 plus 1 gleich 2"), ("fr", "5€", "5 €"), ("ru", "№5", "№ 5"),
+            ("fr", "-5", "moins 5"), ("es", "5 €", "5 euro"), ("es", "20%", "20 porciento"),
+            ("ru", "500 ₽", "500 рублей"), ("hi", "₹500", "500 रुपये"), ("hi", "500 ₹", "500 रुपये"),
+            ("cmn", "20%", "百分之二十"), ("cmn", "$5", "五美元"), ("cmn", "20℃", "二十摄氏度"),
+            ("ja", "¥500", "500 えん"), ("ko", "5 €", "5 유로")):
+        assert labial.phonemes(text, language=language) == labial.phonemes(same, language=language), (language, text)
+    assert labial.phonemes("20%", language="hi")[-7:] == "P AH T IH SH AH T".split()
+    assert labial.phonemes("5 $", language="de") == "F UW N F D AO L AA".split()
+    assert labial.phonemes("％", language="ja") == "P AE S EH N T OW".split()
+    assert labial.phonemes("5 €", language="fr") == "S EH K AH G OW".split()
+    assert labial.phonemes("№ 5", language="ru") == "N OW M EH L P AE T".split()
+    assert labial.phonemes("£5.50", language="en-gb")[-4:] == "P AW N D".split()
+    assert labial.phonemes("€3", language="en-gb") == "TH R IY Y UH R OW Z".split()
+    assert labial.phonemes("20% (10-20)", language="de", own={"20%": "P"})[0] == "P"
+    assert not caplog.records
+    for _ in range(2):
+        assert labial.phonemes("5 ₽", language="fr") == labial.phonemes("5", language="fr")
+    assert caplog.messages == ["espeak-ng cannot speak '₽' in the language 'fr': it is silent"]
+
+
+@needs_espeak
 def test_the_n_of_japanese() -> None:
     """Before p, b and m lips close; before vowels, w, y and h they do not round."""
     for word, phonemes in (("がんばる", "G AE M B AE L UH"), ("えんぴつ", "EH M P IY S UH"), ("さんま", "S AE M M AE"),
@@ -311,9 +359,10 @@ def test_languages_that_cannot_be_had_are_errors(monkeypatch: pytest.MonkeyPatch
         labial.phonemes("a", language="-v")
 
 
-def test_numbers_are_written_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By num2words, for which a stand-in records what it is asked."""
+def test_numbers_are_written_out(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """By num2words, for which a stand-in records what it is asked; what it cannot write is logged once."""
     asked = []
+    monkeypatch.setattr(spoken, "_unwritten", set())
 
     class Stub:
         @staticmethod
@@ -328,11 +377,38 @@ def test_numbers_are_written_out(monkeypatch: pytest.MonkeyPatch) -> None:
     assert asked == [(1984, "en", "year"), (101, "en", "cardinal"), (2300.5, "en", "cardinal")]
     words = labial.phonemes("one hundred one")
     assert got == [*labial.phonemes("in"), *words, *words, *labial.phonemes("or"), *words]
-    with pytest.raises(LabialError, match="num2words cannot write '13' in the language 'en'"):
-        labial.phonemes("13", numbers=True)
+    assert labial.phonemes("2024-05-03 1,5", numbers=True) == labial.phonemes("2024-05-03 1,5") and len(asked) == 3
+    for _ in range(2):  # a stream goes on
+        assert labial.phonemes("13", numbers=True) == labial.phonemes("13")
+    assert caplog.messages == ["num2words cannot write '13' in the language 'en': such digits are read as without "
+                               "numbers=True"]
     monkeypatch.setitem(sys.modules, "num2words", None)
+    with pytest.raises(LabialError, match="numbers in words needs"):
+        labial.Voice(numbers=True)
     with pytest.raises(LabialError, match=r"numbers in words needs the package num2words: pip install '\.\[numbers\]'"):
         labial.phonemes("101", numbers=True)
+
+
+@needs_espeak
+def test_numbers_are_written_out_with_their_signs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In other languages; where num2words does not know one, espeak-ng reads the digits."""
+
+    class Stub:
+        @staticmethod
+        def num2words(value: float, lang: str, to: str) -> str:
+            if lang == "hi":
+                raise NotImplementedError
+            return "minus zwei" if value < 0 else "zwei"
+
+    monkeypatch.setitem(sys.modules, "num2words", Stub)
+    monkeypatch.setattr(spoken, "_unwritten", set())
+    for text, same in (("$25", "zwei $"), ("25 %", "zwei Prozent"), ("25%", "zwei Prozent"), ("-25", "minus zwei"),
+                       ("25", "zwei"), ("2,5 %", "2,5 Prozent")):
+        assert labial.phonemes(text, language="de", numbers=True) == labial.phonemes(same, language="de"), text
+    with labial.Voice(language="hi", numbers=True) as voice:
+        voice.say("25", 0.1, 0.6)
+        assert len(voice.played(0.5)) == 26
+    assert labial.phonemes("25", language="hi", numbers=True) == labial.phonemes("25", language="hi")
 
 
 def test_a_refused_word_is_named() -> None:

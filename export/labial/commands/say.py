@@ -36,14 +36,14 @@ def add_say(command: argparse.ArgumentParser) -> None:
     group = command.add_mutually_exclusive_group()
     group.add_argument("--audio", metavar="FILE.wav", help="a recording of the text, whose lips are heard")
     group.add_argument("--voice", metavar="VOICE", help="flite:NAME or espeak:NAME; none: no sound, every phoneme as "
-                       f"long as it usually is; without it the first that is installed of {', '.join(_VOICES)}")
+                       "long as it usually is, and texts of more than 1,000 characters; without it the "
+                       f"first that is installed of {', '.join(_VOICES)}")
     command.add_argument("--language", default="en", help="en, or what espeak-ng calls a language; for others than en "
                          "espeak-ng is needed (en)")
 
 
 def run_say(options: argparse.Namespace) -> int:
     """Writes the page, the frames or the timings."""
-    from labial.files.limits import MESSAGE_TEXT
     from labial.files.outputs import check, check_suffix
 
     options.text = " ".join(options.text)
@@ -51,9 +51,6 @@ def run_say(options: argparse.Namespace) -> int:
     form = check_suffix(options.output, *_SUFFIXES) if options.output else ".lab"
     if not options.text.strip():
         raise LabialError("there is nothing to say: the text is empty")
-    if options.audio is None and len(options.text) > MESSAGE_TEXT:
-        raise LabialError(f"the text has {len(options.text):,} characters, more than the {MESSAGE_TEXT:,} that are "
-                          "said at once; say it in parts, or give a recording of it with --audio")
     with ExitStack() as stack:
         audio, timings = options.audio, None
         if audio is None:
@@ -81,6 +78,8 @@ def run_say(options: argparse.Namespace) -> int:
 
 def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
     """The text as a synthesiser says it; None without one."""
+    from labial.files.limits import MESSAGE_TEXT
+
     voice = options.voice
     if voice is None:
         voices = _VOICES if options.language == "en" else {f"espeak:{options.language}": "espeak-ng"}
@@ -91,6 +90,9 @@ def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
             voice = "none"
     if voice == "none":
         return None
+    if len(options.text) > MESSAGE_TEXT:
+        raise LabialError(f"the text has {len(options.text):,} characters, more than the {MESSAGE_TEXT:,} that a voice "
+                          "says at once; say it in parts, with --voice none, or give a recording of it with --audio")
     from labial.hearing.voices import speak
 
     try:

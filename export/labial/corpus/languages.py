@@ -19,6 +19,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from labial.core import espeak
 from labial.core.words import read
+from labial.corpus import signs
 from labial.corpus.phonesets import SPEECH, VOWELS
 from labial.errors import LabialError, apt, missing, pip
 
@@ -30,6 +31,8 @@ _SENTENCE = 60
 #: How much of a word in its sentence must be as it is alone, for the two to be the same word.
 _ALIKE = 0.5
 
+#: What is a word in its sentence; signs are not, and espeak-ng makes several words of them.
+_WORD = re.compile(r"[^\s%‰&+=@°§№#$€£¥₹₽]*[^\W_][^\s%‰&+=@°§№#$€£¥₹₽]*")
 _VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
 _CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
 #: Chinese that is Cantonese: as services name it, and where it is what people speak.
@@ -45,6 +48,9 @@ _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
 _N = re.compile("ũ(?=_[ˈˌ]?[pbm])"), re.compile("ũ")
 #: The vowel of Japanese "desu" and "masu", which is whispered.
 _DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
+#: Languages of India whose affricates espeak-ng writes as palatal stops, with or without breath behind them.
+_INDIAN = frozenset("as bn bpy gu hi kn kok ml mr ne or pa sd te ur".split())
+_AFFRICATES = {"c": "tʃ", "ɟ": "dʒ"}
 _VOWELS = frozenset(VOWELS.split())
 
 _INITIALS = {"b": "B", "p": "P", "m": "M", "f": "F", "d": "D", "t": "T", "n": "N", "l": "L", "g": "G", "k": "K",
@@ -71,8 +77,9 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
     if not _VOICE.fullmatch(language):
         raise LabialError(f"{language!r:.40} is no language of espeak-ng")
     language = "yue" if _CANTONESE.fullmatch(language) else language
-    given = [unicodedata.normalize("NFC", word) for word in words]
-    if _CHINESE.fullmatch(language):
+    is_pinyin = bool(_CHINESE.fullmatch(language))
+    given = [signs.worded(unicodedata.normalize("NFC", word), "cmn" if is_pinyin else language) for word in words]
+    if is_pinyin:
         found = [_by_pinyin(word) for word in given]
     else:
         if _JAPANESE.fullmatch(language):
@@ -118,8 +125,8 @@ def _say_unspeakable(word: str, language: str) -> None:
     _unspeakable[key] = None
     is_kanji = _JAPANESE.fullmatch(language) and HAN.search(word)
     hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
-    _logger.warning("espeak-ng cannot speak %.40r in the language %r: the lips move for its time alone%s", word,
-                    language, hint)
+    shown = "the lips move for its time alone" if re.search(r"[^\W_]", word) else "it is silent"
+    _logger.warning("espeak-ng cannot speak %.40r in the language %r: %s%s", word, language, shown, hint)
 
 
 # ---- espeak-ng
@@ -129,8 +136,8 @@ def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
     """The phonemes of words, as they sound in their sentence where that can be told."""
     found = _spoken(words, language)
     for first in range(0, len(words), _SENTENCE):
-        part = [word for word in words[first : first + _SENTENCE] if word]
-        places = [place for place in range(first, min(first + _SENTENCE, len(words))) if words[place]]
+        places = [place for place in range(first, min(first + _SENTENCE, len(words))) if _WORD.fullmatch(words[place])]
+        part = [words[place] for place in places]
         said = _spoken([" ".join(part)], language, " ")
         if len(part) < 2 or len(said) != len(part):
             continue
@@ -147,9 +154,12 @@ def _spoken(texts: Sequence[str], language: str, between: str = "") -> List[List
         lines = [word for word in lines[0].split(between) if word.strip("_")]
     if _JAPANESE.fullmatch(language):
         lines = [_N[1].sub("ɴ", _N[0].sub("m", line)) for line in lines]
-    tonal = language.split("-")[0] in ("yue", "th", "vi", "my", "hak", "nan")
+    main = language.split("-")[0]
+    if main in _INDIAN:
+        lines = [re.sub("[cɟ]", lambda found: _AFFRICATES[found[0]], line) for line in lines]
+    tonal = main in ("yue", "th", "vi", "my", "hak", "nan")
     result = [_phonemes(line, tonal) for line in lines]
-    return [_with_vowels(phonemes) for phonemes in result] if language.split("-")[0] == "ar" else result
+    return [_with_vowels(phonemes) for phonemes in result] if main == "ar" else result
 
 
 def _phonemes(line: str, tonal: bool) -> List[str]:

@@ -10,20 +10,23 @@ from __future__ import annotations
 import logging
 import re
 import unicodedata
-from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read, read_words
+from labial.corpus import signs
 from labial.corpus.languages import HAN, is_chinese, pronounced
-from labial.errors import LabialError, needs
+from labial.errors import needs
 
 _logger = logging.getLogger("labial")
 #: The language of the library's tables.
 ENGLISH = "en"
 #: Latest time, milliseconds: the library counts in 32 bits.
 LATEST = (1 << 32) - 2
-#: What a text's words are looked up by: letters, digits and what may stand within a word.
+#: What a text's words are looked up by: letters, digits and what may stand within a word; in other languages than
+#: English signs, too.
 _STRETCH = re.compile(r"[^\W_]+(?:['’\-.,][^\W_]+)*")
-_NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
+_SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
+_NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
 _TAGS = {"[": "]", "<": ">"}
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
@@ -187,33 +190,38 @@ def own_words(texts: Iterable[str], how: Pronunciation) -> OwnWords:
 
 def known_words(texts: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[str]]:
     """The phonemes of the caller's own words and, from these texts, of those that the library does not read itself."""
-    known: Dict[str, Sequence[str]] = dict(how.own)
-    stretches = stretches_of(texts, known)
+    known: Dict[str, Sequence[str]] = {}
+    stretches = stretches_of(texts, how.own, how.language)
     if how.numbers:
-        for item in stretches:
-            if _NUMBER.fullmatch(item):
-                known[item] = _spoken(_written_out(item, how.language).split(), how)
+        known = _numbers(stretches, how)
     if how.language != ENGLISH:
         asked = [item for item in stretches if item not in known]
-        said = zip(asked, pronounced(asked, how.language))
-        known.update((word, phonemes) for word, phonemes in said if phonemes is not None)
+        for word, phonemes in zip(asked, pronounced(asked, how.language)):
+            if phonemes is not None or not re.search(r"[^\W_]", word):  # a sign that is not said is not English
+                known[word] = phonemes or ()
     for word in known:
-        if word not in how.own and len(known[word]) > PHONEMES_MAX:
+        if len(known[word]) > PHONEMES_MAX:
             _logger.warning("%.40r has %d phonemes: the lips move for the first %d", word, len(known[word]),
                             PHONEMES_MAX)
             known[word] = known[word][:PHONEMES_MAX]
-    return known
+    return {**how.own, **longest_first(known)}
 
 
-def stretches_of(texts: Iterable[str], known: Container[str]) -> List[str]:
+def longest_first(known: Mapping[str, Sequence[str]]) -> Dict[str, Sequence[str]]:
+    """Words in the order in which the library looks for them: "20%" is not "20"."""
+    return {word: known[word] for word in sorted(known, key=len, reverse=True)}
+
+
+def stretches_of(texts: Iterable[str], known: Container[str], language: str) -> List[str]:
     """What these texts' words are looked up by, without those that are known."""
-    return list(dict.fromkeys(item for text in texts for item in _stretches(text) if item not in known))
+    return list(dict.fromkeys(item for text in texts for item in _stretches(text, language) if item not in known))
 
 
-def _stretches(text: str) -> List[str]:
+def _stretches(text: str, language: str) -> List[str]:
     """The stretches of a text. Marks and joiners belong to the letter before them: without them Hindi falls apart."""
     plain = "".join("x" if _is_mark(character) else character for character in text)
-    return [text[found.start() : found.end()] for found in _STRETCH.finditer(plain)]
+    pattern = _STRETCH if language == ENGLISH else _SIGNED
+    return [text[found.start() : found.end()] for found in pattern.finditer(plain)]
 
 
 def _is_mark(character: str) -> bool:
@@ -227,10 +235,26 @@ def _spoken(words: Sequence[str], how: Pronunciation) -> List[str]:
     return [phoneme for word in words for phoneme in read(word).phonemes]
 
 
-def _written_out(digits: str, language: str) -> str:
-    """A number in words; four digits from 1100 to 2099 are a year."""
+def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[str]]:
+    """The phonemes of the numbers among these stretches, without those that num2words cannot write."""
     with needs("numbers in words", "numbers"):
-        from num2words import num2words
+        import num2words  # noqa: F401
+    known: Dict[str, Sequence[str]] = {}
+    for item in stretches:
+        text = item if how.language == ENGLISH else signs.worded(item, how.language)
+        digits = re.search(r"-?\d[\d.,]*", text)
+        if not digits or not signs.NUMBER.fullmatch(item) or not _NUMBER.fullmatch(digits[0]):
+            continue
+        written = _written_out(digits[0], how.language)
+        if written is not None:
+            known[item] = _spoken(f"{text[: digits.start()]} {written} {text[digits.end() :]}".split(), how)
+    return known
+
+
+def _written_out(digits: str, language: str) -> Optional[str]:
+    """A number in words; four digits from 1100 to 2099 are a year. None where num2words does not know the language, or
+    the number is too large for it."""
+    from num2words import num2words
 
     plain = digits.replace(",", "")
     is_year = digits == plain and re.fullmatch(r"1[1-9]\d\d|20\d\d", plain)
@@ -238,5 +262,17 @@ def _written_out(digits: str, language: str) -> str:
         value = float(plain) if "." in plain else int(plain)
         text = str(num2words(value, lang=language, to="year" if is_year else "cardinal"))
     except (NotImplementedError, OverflowError, ValueError):
-        raise LabialError(f"num2words cannot write {digits!r:.40} in the language {language!r:.40}") from None
+        _say_unwritten(digits, language)
+        return None
     return re.sub(r"\band\b", " ", text) if language == ENGLISH else text
+
+
+_unwritten: Set[str] = set()
+
+
+def _say_unwritten(digits: str, language: str) -> None:
+    """Logs that a number is not written out, once for each language."""
+    if language not in _unwritten:
+        _unwritten.add(language)
+        _logger.warning("num2words cannot write %.40r in the language %r: such digits are read as without numbers=True",
+                        digits, language)

@@ -48,8 +48,8 @@ SOUND_RATES, SOUND_CHANNELS = (1_000, 768_000), 64
 #: Largest sample of a sound of floats; full scale is 1.
 SOUND_PEAK = 1e6
 #: Of a service's message: levels of lists and objects, documents in it, items that it times, fields of an object of a
-#: client library; characters of a text, also of one that `labial say` says. The services' table has the same limits for
-#: JavaScript.
+#: client library; characters of a text, also of one that a voice of `labial say` says. The services' table has the
+#: same limits for JavaScript.
 MESSAGE_NESTING, MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_FIELDS, MESSAGE_TEXT = 64, 10_000, 10_000, 200, 1_000
 #: Bytes of a phoneme's label that are read, as in C (LABIAL_NAME_MAX).
 LABEL = 64

@@ -33,6 +33,7 @@ from labial.corpus.words import (
     Pronunciation,
     characters_apart,
     known_words,
+    longest_first,
     own_words,
     pronunciation,
     stretches_of,
@@ -351,7 +352,7 @@ class _Speaker:
         if joined:  # characters: the last word may go on in the next message
             texts = words_of(self._tail + "".join(texts))
             self._tail = texts[-1]
-        asked = stretches_of(texts, {**self._spoken, **self._how.own})
+        asked = stretches_of(texts, {**self._spoken, **self._how.own}, self._how.language)
         if asked:
             if len(self._spoken) > _SPOKEN:
                 self._spoken, self._texts = {}, {}
@@ -363,14 +364,14 @@ class _Speaker:
         if said not in self._texts:
             if len(self._texts) > _SPOKEN:
                 self._texts = {}
-            wanted = stretches_of([said.decode("utf-8", "replace")], ())
+            wanted = stretches_of([said.decode("utf-8", "replace")], (), self._how.language)
             try:
                 self.prepare(wanted, False)
             except LabialError:
                 pass  # it said so when the text was told
             spoken = {word: self._spoken.get(word) for word in wanted}
             known = {word: phonemes for word, phonemes in spoken.items() if phonemes is not None}
-            self._texts[said] = OwnWords({**known, **self._how.own})
+            self._texts[said] = OwnWords({**self._how.own, **longest_first(known)})
         return int(self._texts[said].place)
 
 
