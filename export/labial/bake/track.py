@@ -12,7 +12,6 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.bake import track
 from labial.bake.source import RATE, Motion, Source, read_phonemes, read_track
 from labial.errors import DataError, LabialError
 from labial.files.c import check_name, constants_of, rows, written_by
@@ -68,7 +67,7 @@ class Part:
     end: int  #: the one behind their last
 
 
-def parts(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
+def parts_of(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
     """Parts of a track, cut in the middle of a pause, or `BEFORE` its end where that is later.
 
     `pauses` (T,) bool are the frames in pauses. Each part has at most `longest` frames and as many as it can, or ends
@@ -252,16 +251,16 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
         model, called, stream = read_phonemes(source)
         files = {path: phonemes_header(name, Path(source.path).name, called, model.phonemes, stream)}
     else:
-        face = read(rig, name) if rig is not None else track.JAW
+        face = read(rig, name) if rig is not None else JAW
         table = convert(face)
-        track.check_names(face)
+        check_names(face)
         motion = read_track(source)
         still = [output.name for output in face.outputs if output.visemes]
         if still and motion.shares is None:
             warnings.warn(f"{source.path}: frames do not tell their sounds, which {', '.join(still)} of {rig} "
                           f"follow{'s' * (len(still) == 1)}; phoneme timings do", stacklevel=2)
-        cut = None if parts is None else track.parts(motion.pauses, longest)
-        text = track.header(name, Path(source.path).name, face, table, motion, cut)
+        cut = None if parts is None else parts_of(motion.pauses, longest)
+        text = header(name, Path(source.path).name, face, table, motion, cut)
         told = [f"part {number}: {part.begin / RATE:.2f} to {part.end / RATE:.2f} s"
                 for number, part in enumerate(cut or [])]
         files = {path: text, path.with_name(PLAYER): Path(__file__).with_name(PLAYER).read_text(encoding="ascii")}
