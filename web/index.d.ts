@@ -105,6 +105,8 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly time: number;
     /** Frames per second. */
     readonly fps: number;
+    /** The form of its frames. */
+    readonly output: O;
     /** The model of the next push. */
     readonly model: Model;
     /** The stream was ended or cancelled, and every frame was delivered. */
