@@ -37,10 +37,8 @@ from labial.tables.quantise import ExportedModel, quantise
 
 #: Episodes of a corpus that are used, evenly spread over it.
 EPISODES = 60
-
 #: Most frames of SOLVER, BENCH_SOLVE of unit.h.
 LONGEST = 400
-
 #: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
 #: (LABIAL_POSITION_MAX).
 UNIT = 1.0
@@ -95,9 +93,8 @@ def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarr
     return np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True) for stream in streams])
 
 
-def measure(
-    model: Model, exported: ExportedModel, solver: Sequence[str], streams: Sequence[Stream]
-) -> Dict[str, float]:
+def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
+            streams: Sequence[Stream]) -> Dict[str, float]:
     """The figures by name."""
     ideal, tables = FloatTables(model), ExportedTables(exported)
     errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)

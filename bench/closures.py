@@ -19,6 +19,7 @@ import numpy as np
 
 import labial
 from labial.bake.track import JAW
+from labial.files.frames import opening
 from labial.hearing.voices import speak
 from labial.rig.description import Rig
 from labial.rig.table import convert, expected
@@ -69,8 +70,7 @@ def moving(spoken: Sequence[Tuple[str, float]]) -> Said:
 
 def least_openings(frames: np.ndarray, spans: Sequence[Tuple[int, int]]) -> List[int]:
     """The least opening in each span, FAP units."""
-    opening = -(frames[:, 3] + frames[:, 4])
-    return [int(opening[begin:end].min()) for begin, end in spans]
+    return [int(opening(frames)[begin:end].min()) for begin, end in spans]
 
 
 def jaw(slew: Optional[int], acceleration: Optional[int]) -> Rig:

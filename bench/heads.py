@@ -21,7 +21,7 @@ from labial.fit.head import Head, read_table
 from labial.fit.kinds import KINDS, kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import judge, matrix, opening
-from labial.fit.sentences import Motion, read_sentences
+from labial.fit.solve import Motion, read_sentences
 from labial.rig.animation import face, outputs
 
 #: Shapes that a head needs for a built-in rig.

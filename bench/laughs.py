@@ -16,17 +16,12 @@ from typing import Sequence
 import numpy as np
 
 import labial
+from labial.files.frames import opening
 
 #: Intensities of `labial_laugh_init()`, of LABIAL_LAUGH_FULL at most.
 INTENSITIES, FULL = (0, 64, 128, 192, 256), 256
 SECONDS = 3.0
 SEEDS = range(1, 13)
-
-
-def opening(frames: np.ndarray) -> np.ndarray:
-    """(T,) the lips' opening of (T, 13) FAPs."""
-    result: np.ndarray = -(frames[:, 3] + frames[:, 4])
-    return result
 
 
 def laugh(intensity: int, seed: int) -> np.ndarray:

@@ -32,7 +32,7 @@ from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.kinds import shapes_for
 from labial.fit.landmarks import read_head
-from labial.fit.sentences import Motion, read_sentences
+from labial.fit.solve import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.runtime.stream import Stream
 from labial.tables.visemes import ONE, VISEME_OF

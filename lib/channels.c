@@ -84,16 +84,6 @@ void labial_channels_run_out(labial_channels_t *channels)
     channels->beyond++;
 }
 
-int labial_channels_uses(const labial_channels_t *channels, unsigned slot)
-{
-    const unsigned delay = LABIAL_DELAY(channels->stride);
-    unsigned age;
-    for (age = channels->beyond; age < delay && age < channels->entered; age++)
-        if (channels->slots[age] == slot)
-            return 1;
-    return 0;
-}
-
 int labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
                         int16_t frame[LABIAL_CHANNELS])
 {

@@ -36,7 +36,4 @@ void labial_channels_step(labial_channels_t *channels, const labial_model_t *con
 int labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
                         int16_t frame[LABIAL_CHANNELS]);
 
-/* Whether frames of the model in `slot` are still to be completed. */
-int labial_channels_uses(const labial_channels_t *channels, unsigned slot);
-
 #endif

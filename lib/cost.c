@@ -1,11 +1,15 @@
 /*
- * cost.c - the work of a tick with a model (labial/model.h).
- *
- * Each term is the number of times that a step can occur in one tick, times the most instructions that a Cortex-M0
- * takes for it, compiled by GCC with -Os or -O2. tests/device/model_cost.c counts them.
+ * cost.c - what a model and a stream take: work (labial/model.h), memory, time, and the model's bytes (labial/labial.h).
+ * It reads what the steps of a stream hold and changes nothing; a program that only plays links none of it.
  */
-#include "labial/labial.h"
+#include "fixed.h"
+#include "locks.h"
+#include "units.h"
 
+/* ---- Work -------------------------------------------------------------------------------------------------------- */
+
+/* Each term of a cost is the number of times that a step can occur in one tick, times the most instructions that a
+ * Cortex-M0 takes for it, compiled by GCC with -Os or -O2. tests/device/model_cost.c counts them. */
 enum {
     PER_TICK = 3200,     /* the queue, floors and contact, fades, the callback's frame */
     PER_TAP = 190,       /* of the kernels, in all channels */
@@ -77,4 +81,52 @@ uint32_t labial_model_cost(const labial_model_t *model)
     channels = LABIAL_PAPER ? model->channel_count : (model->channel_count + stride - 1u) / stride;
     return PER_TICK + (uint32_t)model->kernel_taps * PER_TAP + SELECTED * selection(model) +
            channels * channel_step(model, stride);
+}
+
+/* ---- Memory, time, the model's bytes ----------------------------------------------------------------------------- */
+
+uint32_t labial_workspace_size(const labial_model_t *model)
+{
+    return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
+}
+
+/* Frames as milliseconds, rounded. */
+static uint32_t milliseconds_of_frames(uint32_t frames, uint32_t rate)
+{
+    const uint32_t seconds = labial_quotient(frames, rate), rest = frames - seconds * rate;
+    return seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
+}
+
+/* Whether the stream is initialised. */
+static int is_initialised(const labial_t *stream)
+{
+    return stream && stream->magic == LABIAL_MAGIC_;
+}
+
+labial_latency_t labial_latency(const labial_t *stream)
+{
+    labial_latency_t latency = { 0, 0, 0, 0, 0 };
+    LABIAL_LOCK(stream);
+    if (is_initialised(stream)) {
+        const uint32_t rate = stream->models[stream->slot]->frames_per_second;
+        latency.frames = stream->pending;
+        latency.milliseconds = milliseconds_of_frames(latency.frames, rate);
+        latency.phonemes = stream->units.count;
+        latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
+        latency.delay_milliseconds = milliseconds_of_frames(latency.delay, rate);
+    }
+    LABIAL_UNLOCK(stream);
+    return latency;
+}
+
+int labial_uses(const labial_t *stream, const labial_model_t *model)
+{
+    int uses = 0;
+    unsigned slot;
+    LABIAL_LOCK(stream);
+    for (slot = 0; is_initialised(stream) && slot < LABIAL_MODELS; slot++)
+        uses |= stream->models[slot] == model &&
+                (slot == stream->slot || labial_units_uses(&stream->units, slot, stream->pending));
+    LABIAL_UNLOCK(stream);
+    return uses;
 }

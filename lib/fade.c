@@ -16,7 +16,7 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
     return (unsigned)(frames < 1u ? 1u : frames < LABIAL_CANCEL_MAX ? frames : LABIAL_CANCEL_MAX);
 }
 
-void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
+void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on)
 {
     unsigned k;
     for (k = 0; k < LABIAL_CHANNELS; k++) {
@@ -24,11 +24,7 @@ void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
         fade->from[k] = fade->pose[k];
     }
     fade->step = 1;
-    fade->length = fade->closing = (uint16_t)length;
-}
-
-void labial_fade_close(labial_fade_t *fade, unsigned closing)
-{
+    fade->length = (uint16_t)length;
     fade->closing = (uint16_t)closing;
 }
 
@@ -65,12 +61,6 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
         fade->pose[k] = (int16_t)labial_clamp(from + (((aim_of(motion, k) - from) * own + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);
-}
-
-void labial_fade_stand(labial_fade_t *fade)
-{
-    memcpy(fade->earlier, fade->pose, sizeof fade->earlier);
-    fade->step = 0;
 }
 
 /* A channel in whole FAP units. */

@@ -27,17 +27,12 @@ unsigned labial_fade_closing(const labial_t *stream, unsigned age, unsigned leng
 /* Frames of a cancel over `milliseconds` (labial/result.h). */
 unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
 
-/* Begins a way of 1 to 65535 steps from the pose that was delivered last, which goes on moving or stands still. */
-void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on);
-
-/* Jaw and lips arrive with step `closing` of the way that has just begun. */
-void labial_fade_close(labial_fade_t *fade, unsigned closing);
+/* Begins a way of 1 to 65535 steps from the pose that was delivered last, which goes on moving or stands still. Jaw and
+ * lips arrive with step `closing`. */
+void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on);
 
 /* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral face. */
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
-
-/* The pose that was delivered last stays where it is: no way leads on. */
-void labial_fade_stand(labial_fade_t *fade);
 
 /* What is left of `whole` on the way, in even steps; 0 at its end, and without one. */
 static inline uint32_t labial_fade_left(const labial_fade_t *fade, uint32_t whole)

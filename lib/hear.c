@@ -42,7 +42,7 @@ static int tell_frame(labial_hear_t *hear, const int16_t *pose)
 /* Delivers the way to rest. */
 static int tell_way_to_rest(labial_hear_t *hear, unsigned frames)
 {
-    labial_fade_begin(&hear->fade, frames, 0);
+    labial_fade_begin(&hear->fade, frames, frames, 0);
     hear->told = hear->told == LABIAL_HEAR_NOTHING_ ? LABIAL_HEAR_NOTHING_ : LABIAL_HEAR_WAY_TO_REST_;
     for (; frames > 0; frames--)
         if (!tell_frame(hear, NULL))
@@ -134,7 +134,7 @@ static int hear_rest(labial_hear_t *hear)
 /* Forgets the sound but for its level: there was silence before, and what follows fades in. */
 static void reset_sound(labial_hear_t *hear)
 {
-    labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, 0);
+    labial_fade_begin(&hear->fade, LABIAL_FADE_STEPS, LABIAL_FADE_STEPS, 0);
     hear->sounding = 0;
     hear->told = LABIAL_HEAR_NOTHING_;
     hear->first = hear->frame;

@@ -14,15 +14,6 @@ int labial_use(labial_t *stream, const labial_model_t *model)
     return result;
 }
 
-int labial_uses(const labial_t *stream, const labial_model_t *model)
-{
-    int result;
-    labial_lock(stream);
-    result = labial_unlocked_uses(stream, model);
-    labial_unlock(stream);
-    return result;
-}
-
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
 {
     int result;
@@ -98,15 +89,6 @@ int labial_articulation(labial_t *stream, unsigned percent)
     result = labial_unlocked_articulation(stream, percent);
     labial_unlock(stream);
     return result;
-}
-
-labial_latency_t labial_latency(const labial_t *stream)
-{
-    labial_latency_t latency;
-    labial_lock(stream);
-    latency = labial_unlocked_latency(stream);
-    labial_unlock(stream);
-    return latency;
 }
 
 #endif

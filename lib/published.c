@@ -75,15 +75,6 @@ void labial_channels_run_out(labial_channels_t *channels)
     channels->beyond++;
 }
 
-int labial_channels_uses(const labial_channels_t *channels, unsigned slot)
-{
-    unsigned age;
-    for (age = channels->beyond; age < LABIAL_DELAY(0u) && age < channels->entered; age++)
-        if (channels->slots[place_of(channels, age)] == slot)
-            return 1;
-    return 0;
-}
-
 int labial_channels_due(const labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
                         int16_t frame[LABIAL_CHANNELS])
 {

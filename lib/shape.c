@@ -27,11 +27,11 @@ static const uint16_t fine[16] = { 32768, 31760, 30783, 29836, 28918, 28028, 271
 static const uint8_t parted[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
 
 /* Q15 */
-static uint16_t likelihood(uint32_t cost)
+static uint32_t likelihood(uint32_t cost)
 {
     if (cost > 255u)
         return 0;
-    return (uint16_t)(((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15);
+    return ((uint32_t)coarse[cost >> 4] * fine[cost & 15u]) >> 15;
 }
 
 /* part / sum in Q12, rounded down; `inverse` is 2^31 / sum, rounded down, with which the product is short of the
@@ -43,7 +43,7 @@ static uint32_t likelihood_share(uint32_t part, uint32_t sum, uint32_t inverse)
 }
 
 /* Costs and signed, limited z of a phoneme's components; returns the best one's index within the phoneme. */
-static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken, uint32_t *costs, int16_t *deviations)
+static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken, uint32_t *costs, int32_t *deviations)
 {
     const labial_phoneme_t *phonemes = model->phonemes, *phoneme = &phonemes[spoken->phoneme];
     const unsigned previous_class = phonemes[spoken->previous].viseme_class;
@@ -63,7 +63,7 @@ static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken
             cost += (context[previous_class] & 15u) * 16u + (context[next_class] & 0xf0u);
         }
         costs[c] = cost;
-        deviations[c] = (int16_t)(distance < 0 ? -reach : reach);
+        deviations[c] = distance < 0 ? -reach : reach;
         if (cost < least) {
             least = cost;
             best = c;
@@ -78,7 +78,7 @@ static void select_components(const labial_model_t *model, const labial_spoken_t
 {
     const unsigned count = model->phonemes[spoken->phoneme].component_count;
     uint32_t parts[LABIAL_PHONEME_COMPONENTS_MAX];     /* costs; then likelihoods, of the mixture */
-    int16_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
+    int32_t deviations[LABIAL_PHONEME_COMPONENTS_MAX]; /* z of the duration, Q6, not beyond +-SLOPE_Z_MAX */
     const unsigned best = score(model, spoken, parts, deviations);
     const uint32_t least = parts[best];
     uint32_t sum = likelihood(0), rest = ONE, inverse; /* that of the best one, whose share comes last */
@@ -98,7 +98,7 @@ static void select_components(const labial_model_t *model, const labial_spoken_t
             LABIAL_CHECK(counting < LABIAL_PHONEME_COMPONENTS_MAX);
             selection->components[counting] = (uint8_t)c;
             selection->shares[counting] = share;
-            selection->tilts[counting++] = (int16_t)((share * (int32_t)deviations[c]) >> 6);
+            selection->tilts[counting++] = (int16_t)((share * deviations[c]) >> 6);
         }
     }
     selection->count = (uint8_t)counting;
@@ -124,8 +124,7 @@ static void mix(const labial_model_t *model, const labial_phoneme_t *phoneme, la
         LABIAL_CHECK(labial_clamp(mean, 524288) == mean && labial_clamp(change, 1118208) == change);
         mean = ((mean >> 4) * channel->shape_scale + 32768) >> 16;
         change = ((change >> 4) * channel->slope_scale + 32768) >> 16;
-        mean = labial_clamp(mean + change, LABIAL_POSITION_MAX);
-        selection->shape[k].knots[0] = selection->shape[k].knots[1] = (int16_t)mean;
+        selection->shape[k].knots[0] = selection->shape[k].knots[1] = labial_position(mean + change);
     }
 }
 
@@ -173,13 +172,11 @@ static unsigned contacts_of(const labial_model_t *model, unsigned phoneme)
     return floor ? model->contacts[floor - 1u] : 0u;
 }
 
-/* The floors of a phoneme that makes contact, or of silence in which channels come to rest: only one with floors does. */
+/* The floors of a phoneme, null without any. */
 static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
 {
     const unsigned floor = model->phonemes[phoneme].floor;
-    /*@ assert floor > 0; */
-    LABIAL_CHECK(floor > 0u);
-    return model->floors + (floor - 1u) * model->channel_count;
+    return floor ? model->floors + (floor - 1u) * model->channel_count : NULL;
 }
 
 /* Raises those of the channels to a phoneme's floor that lie below it; or, with `rest`, brings them that share of
@@ -187,12 +184,11 @@ static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
                         int16_t target[LABIAL_CHANNELS], int32_t rest)
 {
-    const unsigned floor = model->phonemes[phoneme].floor, width = model->channel_count;
-    const int16_t *least;
+    const int16_t *const least = floors_of(model, phoneme);
+    const unsigned width = model->channel_count;
     unsigned k;
-    if (floor == 0)
+    if (!least)
         return;
-    least = model->floors + (floor - 1u) * width;
     for (k = 0; k < width; k++, channels >>= 1)
         if (channels & 1u) {
             const int32_t above = least[k] - target[k];
@@ -233,10 +229,13 @@ static void part(const labial_model_t *model, const uint8_t *label, int16_t targ
     channels = contacts_of(model, *behind) & contacts_of(model, *ahead);
     last = floors_of(model, *behind);
     next = floors_of(model, *ahead);
+    /* Only phonemes with floors make contact. */
+    /*@ assert last != \null && next != \null; */
+    LABIAL_CHECK(last && next);
     for (fap = 0; fap < LABIAL_CHANNELS; fap++) {
         const unsigned k = model->sources[fap];
         if (parted[fap] && (channels >> k & 1u)) { /* FAP 17, which may have no channel, does not part */
-            const int32_t floor = last[k] < next[k] ? last[k] : next[k];
+            const int32_t one = last[k], other = next[k], floor = one < other ? one : other;
             const int16_t most = labial_position(floor - parted[fap] * 16);
             if (floor > LABIAL_NO_FLOOR && target[k] > most)
                 target[k] = most;
@@ -260,8 +259,7 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
         if (beside != labels[0] && beside != model->silence &&
             (beside != labels[2 * step] || (step > 0 && beside != labels[3]))) {
             const unsigned contacts = contacts_of(model, beside);
-            if (contacts)
-                apply_floor(model, beside, contacts, target, 0);
+            apply_floor(model, beside, contacts, target, 0);
             borrowed |= contacts;
         }
     }

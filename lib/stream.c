@@ -26,11 +26,6 @@
 /* FAP units: lips that are no farther apart close in time by themselves. */
 #define CLOSED 24
 
-uint32_t labial_workspace_size(const labial_model_t *model)
-{
-    return model ? LABIAL_WORKSPACE_SIZE((uint32_t)model->search_stride, model->channel_count) : 0;
-}
-
 /* LABIAL_OK for an initialised stream, else the error that every call on it returns. */
 static int status(const labial_t *stream)
 {
@@ -158,9 +153,9 @@ static int deliver(labial_t *stream)
     if (!labial_channels_due(&stream->channels, stream->models, motion))
         return 0;
     if (stream->resting || is_among(stream->begins, LABIAL_DELAY(stream->channels.stride))) {
-        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, !stream->resting);
-        labial_fade_close(&stream->fade, labial_fade_closing(stream, LABIAL_DELAY(stream->channels.stride),
-                                                             LABIAL_FADE_STEPS, labial_fade_opening(&stream->fade)));
+        const unsigned closing = labial_fade_closing(stream, LABIAL_DELAY(stream->channels.stride), LABIAL_FADE_STEPS,
+                                                     labial_fade_opening(&stream->fade));
+        labial_fade_begin(&stream->fade, LABIAL_FADE_STEPS, closing, !stream->resting);
     }
     labial_fade_to(&stream->fade, motion);
     stream->pending--;
@@ -175,7 +170,7 @@ static int rest(labial_t *stream)
     if (!stream->resting) {
         if (stream->exact || labial_fade_rests(&stream->fade))
             return 0;
-        labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, 0);
+        labial_fade_begin(&stream->fade, LABIAL_EASE_FRAMES, LABIAL_EASE_FRAMES, 0);
         stream->resting = 1;
     }
     if (stream->fade.step == 0)
@@ -196,12 +191,6 @@ static int hold_or_rest(labial_t *stream)
 }
 
 /* ---- The calls --------------------------------------------------------------------------------------------------- */
-
-/* Whether frames to be delivered, or phonemes in the queue, are of the model in `slot`. */
-static int is_used(const labial_t *stream, unsigned slot)
-{
-    return labial_channels_uses(&stream->channels, slot) || labial_units_uses(&stream->units, slot);
-}
 
 static void reset_input(labial_t *stream)
 {
@@ -244,7 +233,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 
 int labial_use(labial_t *stream, const labial_model_t *model)
 {
-    unsigned slot, chosen = LABIAL_MODELS;
+    unsigned slot;
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
@@ -259,28 +248,17 @@ int labial_use(labial_t *stream, const labial_model_t *model)
         return LABIAL_ERROR_FRAME_RATE;
     if (model->channel_count > stream->channels.width)
         return LABIAL_ERROR_WORKSPACE;
-    for (slot = LABIAL_MODELS; slot-- > 0;) {
-        if (stream->models[slot] == model) {
-            chosen = slot;
-            break;
-        }
-        if (!is_used(stream, slot))
-            chosen = slot;
+    for (slot = 0; slot < LABIAL_MODELS && stream->models[slot] != model; slot++)
+        continue;
+    if (slot == LABIAL_MODELS) { /* none yet: the first place whose model is no longer used */
+        for (slot = 0; slot < LABIAL_MODELS && labial_units_uses(&stream->units, slot, stream->pending); slot++)
+            continue;
+        if (slot == LABIAL_MODELS)
+            return LABIAL_ERROR_MODELS;
     }
-    if (chosen == LABIAL_MODELS)
-        return LABIAL_ERROR_MODELS;
-    stream->models[chosen] = model;
-    stream->slot = (uint8_t)chosen;
+    stream->models[slot] = model;
+    stream->slot = (uint8_t)slot;
     return LABIAL_OK;
-}
-
-int labial_uses(const labial_t *stream, const labial_model_t *model)
-{
-    unsigned slot;
-    for (slot = 0; status(stream) == LABIAL_OK && slot < LABIAL_MODELS; slot++)
-        if (stream->models[slot] == model && (slot == stream->slot || is_used(stream, slot)))
-            return 1;
-    return 0;
 }
 
 int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds)
@@ -348,6 +326,7 @@ int labial_tick(labial_t *stream)
 
 int labial_cancel(labial_t *stream, uint32_t milliseconds)
 {
+    unsigned frames;
     const int result = status(stream);
     if (result != LABIAL_OK)
         return result;
@@ -355,8 +334,8 @@ int labial_cancel(labial_t *stream, uint32_t milliseconds)
         labial_units_go_back(&stream->units, stream->pending - stream->units.frames);
     reset_input(stream);
     stream->ended = stream->resting = 1;
-    labial_fade_begin(&stream->fade, labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second),
-                      0);
+    frames = labial_fade_frames(milliseconds, stream->models[stream->slot]->frames_per_second);
+    labial_fade_begin(&stream->fade, frames, frames, 0);
     return LABIAL_OK;
 }
 
@@ -369,7 +348,7 @@ int labial_restart(labial_t *stream)
         return LABIAL_ERROR_STATE;
     reset_input(stream);
     if (!stream->resting)
-        labial_fade_stand(&stream->fade);
+        labial_fade_begin(&stream->fade, 1, 1, 0); /* which goes nowhere: the face stays where it is */
     return LABIAL_OK;
 }
 
@@ -387,25 +366,4 @@ int labial_articulation(labial_t *stream, unsigned percent)
     if (result == LABIAL_OK)
         labial_articulation_set(&stream->articulation, percent, stream->channels.entered == 0);
     return result;
-}
-
-/* Frames as milliseconds, rounded. */
-static uint32_t milliseconds_of_frames(uint32_t frames, uint32_t rate)
-{
-    const uint32_t seconds = labial_quotient(frames, rate), rest = frames - seconds * rate;
-    return seconds * 1000u + labial_quotient(rest * 1000u + rate / 2u, rate);
-}
-
-labial_latency_t labial_latency(const labial_t *stream)
-{
-    labial_latency_t latency = { 0, 0, 0, 0, 0 };
-    if (status(stream) == LABIAL_OK) {
-        const uint32_t rate = stream->models[stream->slot]->frames_per_second;
-        latency.frames = stream->pending;
-        latency.milliseconds = milliseconds_of_frames(latency.frames, rate);
-        latency.phonemes = stream->units.count;
-        latency.delay = LABIAL_DELAY((unsigned)stream->channels.stride);
-        latency.delay_milliseconds = milliseconds_of_frames(latency.delay, rate);
-    }
-    return latency;
 }

@@ -40,71 +40,64 @@
 /* A quotient that may be as large as 2^BEND_BITS has so many bits less. */
 #define BEND_BITS 4
 
-/* 2^54 / d for 2^30 <= d < 2^31, to about 24 bits: a table of eight bits and two Newton steps x += x (1 - d x). */
-static uint32_t reciprocal(uint32_t d)
-{
-    static const uint8_t table[64] = { 254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206,
-                                       204, 201, 199, 196, 194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172,
-                                       170, 168, 166, 165, 163, 161, 160, 158, 157, 155, 154, 152, 151, 150, 148, 147,
-                                       146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133, 132, 131, 130, 129 };
-    const int32_t rough = table[(d >> 24) & 63u];
-    const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(d >> 15) * rough * 2)) >> 16);
-    const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)d, (uint32_t)x);
-    return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
-}
-
 /* How far d must be shifted left to lie in 2^30 .. 2^31, for 2^19 <= d < 2^31. Cores that do not count leading zeros go
- * there from that of the row before, `hint`, which is near. */
-static inline unsigned headroom(uint32_t d, uint8_t *hint)
+ * there from the shift of the row before, which is near. */
+static inline unsigned headroom(uint32_t d, unsigned shift)
 {
 #if !LABIAL_NARROW_MULTIPLY && defined(__GNUC__) &&                                                                    \
     (defined(__ARM_FEATURE_CLZ) || defined(__x86_64__) || defined(__aarch64__))
-    (void)hint;
+    (void)shift;
     return (unsigned)__builtin_clz(d) - 1u;
 #else
-    unsigned shift = *hint;
     uint32_t top;
     while ((top = d >> (30u - shift)) != 1u) {
         if (top)
             shift--;
         else
             shift++;
-        *hint = (uint8_t)shift;
     }
     return shift;
 #endif
 }
 
-/* scaled / 2^(6 - shift), which is 2^24 at most. */
-static inline uint32_t unscaled(int32_t scaled, unsigned shift)
+/* 2^(54 - shift) / d for 2^19 <= d < 2^31, to about 24 bits; `*shift` becomes the headroom of d. A table of eight bits and
+ * two Newton steps x += x (1 - d x). */
+static uint32_t reciprocal(uint32_t d, uint8_t *shift)
 {
-    return ((uint32_t)scaled << shift) >> 6;
+    static const uint8_t table[64] = { 254, 250, 246, 243, 239, 236, 232, 229, 226, 223, 220, 217, 214, 211, 209, 206,
+                                       204, 201, 199, 196, 194, 192, 189, 187, 185, 183, 181, 179, 177, 175, 173, 172,
+                                       170, 168, 166, 165, 163, 161, 160, 158, 157, 155, 154, 152, 151, 150, 148, 147,
+                                       146, 144, 143, 142, 141, 139, 138, 137, 136, 135, 134, 133, 132, 131, 130, 129 };
+    const unsigned left = headroom(d, *shift);
+    const uint32_t scaled = d << left;
+    const int32_t rough = table[(scaled >> 24) & 63u];
+    const int32_t x = (rough << 8) + ((rough * (((int32_t)1 << 24) - (int32_t)(scaled >> 15) * rough * 2)) >> 16);
+    const int32_t error = ((int32_t)1 << 30) - labial_part16((int32_t)scaled, (uint32_t)x);
+    *shift = (uint8_t)left;
+    return (uint32_t)((x << 8) + ((x * (error >> 4)) >> 18));
 }
 
-/* 0 .. 2^24 as 16 bits, of which the largest stands for one. */
-static uint16_t short_part(uint32_t part)
+/* x / d, 0 .. 1, as a part in Q24, with the inverse of d and its shift; kept in 16 bits, of which the largest stands for
+ * one. */
+static uint32_t keep_part(int32_t x, uint32_t inverse, unsigned shift, uint16_t *kept)
 {
-    const uint32_t rounded = (part + 128u) >> 8;
-    return (uint16_t)(rounded - (rounded >> 16));
+    const uint32_t part = ((uint32_t)labial_part24(x, inverse) << shift) >> 6, rounded = (part + 128u) >> 8;
+    *kept = (uint16_t)(rounded - (rounded >> 16));
+    return part;
 }
 
-/* The position of the pending frame given all before it; `g` is its row sum, eliminated. */
-static int32_t filtered(labial_solver_t *solver, int32_t g)
+/* Advances to the position of the pending frame given all before it; `g` is its row sum, eliminated. */
+static void filter_row(labial_solver_t *solver, int32_t g)
 {
-    const unsigned shift = headroom((uint32_t)g, &solver->shifts[0]);
-    const uint32_t inverse = reciprocal((uint32_t)g << shift);
+    const uint32_t inverse = reciprocal((uint32_t)g, &solver->shifts[0]);
+    const unsigned shift = solver->shifts[0];
     const uint32_t hold = (uint32_t)solver->hold << (shift + 1u); /* below 2^16 */
     const uint32_t bend = (((uint32_t)solver->k2 >> BEND_BITS) << shift) >> 7;
     const int32_t q = solver->q1, moved = (q - solver->q2) * (1 << BEND_BITS);
     const int32_t pull = shift < 7u ? solver->pull >> (7u - shift) : solver->pull * (1 << (shift - 7u));
-    return q +
-           2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
-}
-
-/* c * part in Q16, for c below 2^14 and part up to 2^24. */
-static inline int32_t times(int32_t c, uint32_t part)
-{
-    return c * (int32_t)(part >> 8) + ((c * (int32_t)(part & 255u)) >> 8);
+    solver->q2 = q;
+    solver->q1 =
+        q + 2 * labial_part24(labial_part16(solver->position - q, hold) + labial_part24(moved, bend) + pull, inverse);
 }
 
 /* Factors the pending frame; c is its second off-diagonal, `delta` the weight of the row after it. */
@@ -112,30 +105,23 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
 {
     const int32_t hold = (int32_t)solver->hold << 16;
     const int32_t f = ((int32_t)solver->delta + delta) * 131072 + solver->bent;
-    int32_t g = hold + solver->row - solver->k2, q;
-    uint32_t d, inverse, rho, kappa;
+    const int32_t second = c * 65536; /* its products with parts are exact */
+    int32_t g = hold + solver->row - solver->k2;
+    uint32_t inverse, rho, kappa;
     unsigned shift;
     /* GCOVR_EXCL_BR_START: a guard that nothing known meets. Exactly the sum is never below `hold`; where frames are tied
      * at all it is more by 32 and above, of which rounding takes less than three. */
     if (g < hold)
         g = hold;
     /* GCOVR_EXCL_BR_STOP */
-    q = filtered(solver, g);
-
-    d = (uint32_t)(g + f + c * 65536);
-    shift = headroom(d, &solver->shifts[1]);
-    d <<= shift;
-    inverse = reciprocal(d);
-    rho = unscaled(labial_part24(g, inverse), shift);
-    kappa = unscaled(times(c, inverse), shift);
-
-    factors->q = q;
-    factors->rho = short_part(rho);
-    factors->kappa = short_part(kappa);
-    solver->q2 = solver->q1;
-    solver->q1 = q;
+    filter_row(solver, g);
+    factors->q = solver->q1;
+    inverse = reciprocal((uint32_t)(g + f + second), &solver->shifts[1]);
+    shift = solver->shifts[1];
+    rho = keep_part(g, inverse, shift, &factors->rho);
+    kappa = keep_part(second, inverse, shift, &factors->kappa);
     solver->k2 = solver->k1;
-    solver->k1 = times(c, rho);
+    solver->k1 = labial_part24(second, rho);
     solver->row = labial_part24(f, rho) + 2 * solver->k1;
     solver->bent = labial_part24(f, kappa) + 2 * solver->k1;
 }

@@ -7,17 +7,10 @@
 
 #include "fixed.h"
 
-/* The i-th segment of the queue, the oldest being 0. */
-static const labial_segment_t *segment_at(const labial_units_t *units, unsigned i)
+const labial_segment_t *labial_units_at(const labial_units_t *units, unsigned i)
 {
     i += units->head;
     return &units->segments[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
-}
-
-/* The phoneme of a segment as the model in `slot` sees it: another model's phonemes are silence. */
-static uint8_t phoneme_in(const labial_segment_t *segment, unsigned slot, uint8_t silence)
-{
-    return segment->slot == slot ? segment->phoneme : silence;
 }
 
 void labial_units_reset(labial_units_t *units)
@@ -41,7 +34,7 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
     const uint32_t frames = labial_quotient(thousandths, 1000u);
     units->remainder = (uint16_t)(thousandths - frames * 1000u);
     if (frames > 0) {
-        const unsigned i = (unsigned)units->head + units->count;
+        unsigned i = (unsigned)units->head + units->count;
         labial_segment_t *segment = &units->segments[i < LABIAL_QUEUE ? i : i - LABIAL_QUEUE];
         segment->frames = frames;
         segment->ms = (uint16_t)(milliseconds < 65535u ? milliseconds : 65535u);
@@ -49,21 +42,14 @@ uint32_t labial_units_push(labial_units_t *units, unsigned phoneme, unsigned slo
         segment->slot = (uint8_t)slot;
         units->count++;
         units->frames += frames;
+        for (i = 0; i < LABIAL_MODELS; i++)
+            units->since[i] += frames;
+        units->since[slot] = 0;
     }
     return frames;
 }
 
-int labial_units_uses(const labial_units_t *units, unsigned slot)
-{
-    unsigned i;
-    for (i = 0; i < units->count; i++)
-        if (segment_at(units, i)->slot == slot)
-            return 1;
-    return 0;
-}
-
-/* The model's look-ahead in frames, for its kernels and for short contacts. */
-static unsigned look_ahead(const labial_model_t *model)
+unsigned labial_units_ahead(const labial_model_t *model)
 {
     const int reach = (model->kernel_taps - 1 - model->kernel_behind) * model->kernel_stride; /* below 0 without taps */
     const int contact = model->floor_count ? LABIAL_CONTACT_FRAMES : 0;
@@ -84,13 +70,13 @@ static uint16_t share_of(uint32_t frame, uint32_t frames)
 /* Frames of the first of the two phonemes that stand for a long silence; 0 for all other phonemes. */
 static uint32_t head_of(const labial_segment_t *segment, const labial_model_t *model)
 {
-    const unsigned ahead = look_ahead(model);
+    const unsigned ahead = labial_units_ahead(model);
     return segment->phoneme == model->silence && ahead > 0 && segment->frames > ahead ? segment->frames - ahead : 0u;
 }
 
 uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS])
 {
-    const labial_segment_t *segment = segment_at(units, 0);
+    const labial_segment_t *segment = labial_units_at(units, 0);
     uint32_t head;
     if (units->count == 0 || units->taken == 0)
         return 0;
@@ -101,7 +87,8 @@ uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *co
 int labial_units_next(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_spoken_t *spoken)
 {
-    const labial_segment_t *segment = segment_at(units, 0);
+    const labial_segment_t *segment = labial_units_at(units, 0);
+    const unsigned before = segment->slot; /* model of the latest frame, unless a solution begins */
     const labial_model_t *model;
     uint32_t from = units->taken + labial_units_left(units, models), head;
     unsigned i = 0, slot;
@@ -111,27 +98,27 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
     }
     if (i >= units->count)
         return 0;
-    segment = segment_at(units, i);
+    segment = labial_units_at(units, i);
     slot = segment->slot;
     model = models[slot];
     head = head_of(segment, model);
     spoken->slot = (uint8_t)slot;
     spoken->phoneme = segment->phoneme;
     spoken->previous = spoken->next = model->silence;
+    if (!units->begins && before == slot)
+        spoken->previous = units->labels[LABIAL_REACH];
     spoken->ms = segment->ms;
     if (head > 0) {
         const uint16_t tail = (uint16_t)labial_quotient((segment->frames - head) * 1000u, model->frames_per_second);
-        spoken->ms = (uint16_t)(from < head ? segment->ms - tail : tail);
+        spoken->ms = (uint16_t)(from == 0 ? segment->ms - tail : tail);
+        if (from == 0)
+            return 1;
     }
-    if (from == 0 && i > 0)
-        spoken->previous = phoneme_in(segment_at(units, 0), slot, model->silence);
-    else if (from == 0 && !units->begins)
-        spoken->previous = units->labels[LABIAL_REACH];
-    if (from < head)
-        return 1;
     if (i + 1u >= units->count)
         return ended;
-    spoken->next = phoneme_in(segment_at(units, i + 1u), slot, model->silence);
+    segment = labial_units_at(units, i + 1u);
+    if (segment->slot == slot)
+        spoken->next = segment->phoneme;
     return 1;
 }
 
@@ -146,7 +133,7 @@ static uint8_t next_label(labial_units_t *units, unsigned slot, uint8_t silence,
     }
     if (units->labelled >= units->count)
         return silence;
-    segment = segment_at(units, units->labelled);
+    segment = labial_units_at(units, units->labelled);
     if (segment->slot != slot)
         return silence;
     units->labelled++;
@@ -214,7 +201,7 @@ static unsigned go_on(labial_units_t *units, const labial_segment_t *segment, un
 int labial_units_take(labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS], int ended,
                       labial_taken_t *taken)
 {
-    const labial_segment_t *segment = segment_at(units, 0);
+    const labial_segment_t *segment = labial_units_at(units, 0);
     const labial_model_t *model;
     uint32_t head, frames, at = units->taken; /* its place in its phoneme, which has so many */
     unsigned ahead;
@@ -223,7 +210,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     if (units->count == 0)
         return ended ? LABIAL_DONE : LABIAL_STARVED;
     model = models[segment->slot];
-    ahead = look_ahead(model);
+    ahead = labial_units_ahead(model);
     head = head_of(segment, model);
     if (!ended && at >= head && (units->count == 1u || units->frames <= ahead))
         return LABIAL_STARVED;
@@ -231,7 +218,7 @@ int labial_units_take(labial_units_t *units, const labial_model_t *const models[
     relabel(units, segment->slot, model->silence, ahead);
     taken->labels = units->labels + LABIAL_REACH;
     taken->slot = segment->slot;
-    is_last = units->count == 1u || segment_at(units, 1)->slot != segment->slot;
+    is_last = units->count == 1u || labial_units_at(units, 1)->slot != segment->slot;
     frames = head;
     if (at >= head) {
         at -= head;

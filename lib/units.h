@@ -45,6 +45,13 @@ enum {
     LABIAL_PHONEME_BEGINS = 8 /* the first frame of a phoneme; set with LABIAL_PAPER alone */
 };
 
+/* The i-th segment of the queue, the oldest being 0. Not static, like the next one, or compilers would copy it to
+ * every place that calls it. */
+const labial_segment_t *labial_units_at(const labial_units_t *units, unsigned i);
+
+/* A model's look-ahead in frames, for its kernels and for short contacts. */
+unsigned labial_units_ahead(const labial_model_t *model);
+
 /* Empties the queue. */
 void labial_units_reset(labial_units_t *units);
 
@@ -71,7 +78,10 @@ int labial_units_next(const labial_units_t *units, const labial_model_t *const m
 /* Frames before the next phoneme begins; 0 where the next frame does. */
 uint32_t labial_units_left(const labial_units_t *units, const labial_model_t *const models[LABIAL_MODELS]);
 
-/* Whether phonemes of the model in `slot` are in the queue. */
-int labial_units_uses(const labial_units_t *units, unsigned slot);
+/* Whether one of the latest `pending` frames that were pushed is of the model in `slot`. */
+static inline int labial_units_uses(const labial_units_t *units, unsigned slot, uint32_t pending)
+{
+    return units->since[slot] < pending;
+}
 
 #endif

@@ -8,7 +8,6 @@
 
 #if LABIAL_LOCKS > 0
 #define labial_use labial_unlocked_use
-#define labial_uses labial_unlocked_uses
 #define labial_push labial_unlocked_push
 #define labial_room labial_unlocked_room
 #define labial_end labial_unlocked_end
@@ -17,7 +16,6 @@
 #define labial_restart labial_unlocked_restart
 #define labial_exact labial_unlocked_exact
 #define labial_articulation labial_unlocked_articulation
-#define labial_latency labial_unlocked_latency
 #endif
 
 /* The end of what a tick does with its stream, before it calls the callback. */

@@ -101,43 +101,40 @@ static void trace(labial_search_t *search, unsigned best, int ends_unit)
 void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search)
 {
-    unsigned first = first_of_window(model, channel, position), size = searched(model);
+    unsigned first = first_of_window(model, channel, position), size = searched(model), best, i;
     const unsigned into = 4u * model->predecessor_fours; /* each state */
     const labial_emission_t *state = channel->emissions + first;
     const labial_transition_t *transition = channel->transitions + (size_t)first * into;
-    uint32_t costs[LABIAL_SEARCHED], least = UINT32_MAX;
-    unsigned i, best = 0;
+    uint32_t costs[LABIAL_SEARCHED], *cost, *least = costs;
+    const uint32_t *const end = costs + size;
 
     age(search, (int)(marks & LABIAL_BEGINS));
     if (marks & LABIAL_BEGINS)
         for (i = 0; i < size; i++)
             costs[i] = channel->initials[first + i];
     else
-        for (i = 0; i < size; i++) {
-            const labial_transition_t *const end = transition + into;
-            costs[i] = enter(search, transition, end, i);
-            transition = end;
-        }
-    for (i = 0; i < size; i++, state++) {
-        costs[i] += labial_viterbi_emission(state, position);
-        if (costs[i] < least) {
-            least = costs[i];
-            best = i;
-        }
+        for (cost = costs; cost < end; cost++, transition += into)
+            *cost = enter(search, transition, transition + into, (unsigned)(cost - costs));
+    for (cost = costs; cost < end; cost++, state++) {
+        *cost += labial_viterbi_emission(state, position);
+        if (*cost < *least)
+            least = cost;
     }
+    best = (unsigned)(least - costs);
     search->path[0] = (uint8_t)(first + best);
     trace(search, best, (int)(marks & LABIAL_UNIT_ENDS));
     if (marks & LABIAL_UNIT_ENDS) { /* the next step sees the best state alone */
         first += best;
         size = 1;
         best = 0;
-        costs[0] = least;
+        costs[0] = *least;
+        least = costs;
     }
     search->first = (uint8_t)first;
     search->count = (uint8_t)size;
     search->best = (uint8_t)best;
     for (i = 0; i < size; i++) {
-        const uint32_t above = costs[i] - least;
+        const uint32_t above = costs[i] - *least;
         search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);
     }
 }

@@ -1,6 +1,6 @@
 /*
  * words.c - a word's letters to phonemes: decision trees from the last letter to the first, and exceptions.
- * export/labial/words/decoder.py does the same with the trees as they were trained.
+ * export/labial/words/tables.py does the same with the trees as they were trained.
  */
 #include "labial/words.h"
 
@@ -60,7 +60,7 @@ static unsigned asks_label(const view_t *view, unsigned question)
     return view->sounds[2u * label + 1u] >= VOWEL_LAST;
 }
 
-/* Questions to 399 (export/labial/words/questions.py). */
+/* Questions to 399 (export/labial/words/trees.py). */
 static unsigned answer(const view_t *view, unsigned question)
 {
     unsigned groups = view->left;

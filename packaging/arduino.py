@@ -20,10 +20,8 @@ ARCHITECTURES = (
     "esp32", "mbed", "mbed_edge", "mbed_giga", "mbed_nano", "mbed_nicla", "mbed_opta", "mbed_portenta", "mbed_rp2040",
     "nrf52", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "zephyr",
 )  # fmt: skip
-
 #: Sketches for an Uno: they play baked motion, without the library.
 WITHOUT_LIBRARY = ("UnoJaw",)
-
 #: Where the headers lie that sketches share with other examples. A sketch's folder holds copies of them.
 SHARED = (ROOT / "examples" / "talk", ROOT / "examples" / "faces", ROOT / "export" / "labial" / "bake")
 

@@ -10,7 +10,6 @@ from typing import Callable, Dict, List, Optional
 
 #: The folder of the source tree.
 ROOT = Path(__file__).resolve().parents[1]
-
 #: Files with the version, each with a pattern whose group is the number; the public header has the parts.
 VERSIONS: Dict[str, str] = {
     "export/labial/__init__.py": r'^__version__ = "([^"]*)"$',

@@ -30,7 +30,6 @@ SOURCES = ("pyproject.toml", "README.md", "LICENSE", "NOTICE", "include", "lib",
            "cmake/BundledModels.cmake", "cmake/LabialTarget.cmake", "export/labial", "export/models")
 #: Seconds since 1970: the first time that a zip file can name.
 EARLIEST = "315532800"
-
 #: Run by the environment's Python in the sources' folder, with the platform, the compiler's script and the folder. The
 #: library calls nothing but the C library; with -nostdlib zig does not first build its compiler's run-time library,
 #: which takes half a minute.

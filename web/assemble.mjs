@@ -6,6 +6,7 @@
 //     node assemble.mjs model FILE WASM NAME NOTICE   the model that a module exports, as a binary one, in the same way
 //     node assemble.mjs table FILE JSON               the table of services, without what only readers of it need
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
+//     node assemble.mjs frameworks FOLDER             the types of the elements in React, Svelte and Vue
 //     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
 //     node assemble.mjs manifest FOLDER PACKAGES NAME VERSION   package.json, and index.d.ts where PACKAGES has it
 import { readFileSync, writeFileSync } from "node:fs";
@@ -100,6 +101,57 @@ function faces(folder, ...paths) {
         "\nexport type Face = keyof Faces;\n");
 }
 
+/** The elements in the templates of frameworks: `import type {} from "labial/react"`, "labial/svelte" or "labial/vue". */
+function frameworks(folder) {
+    const imports = `import type { LabialFace } from "./labial-face.js";
+import type { LabialMouth } from "./labial-mouth.js";
+import type { Settings } from "./elements.js";
+`;
+    const elements = (type) => ["Face", "Mouth"].map((name) => `"labial-${name.toLowerCase()}": ${type(`Labial${name}`)};`);
+    const types = {
+        elements: `/** What frameworks set on an element, and its events. */
+export type Settings<E> = Partial<Pick<E, keyof E & ("audio" | "track" | "stream" | "hearing" | "voice" | "words" | "caption")>> & {
+    onended?: (event: Event) => void;
+    onlost?: (event: Event) => void;
+};
+`,
+        react: `import type { DetailedHTMLProps, HTMLAttributes } from "react";
+${imports}
+type Props<E> = DetailedHTMLProps<HTMLAttributes<E>, E> & Settings<E> & { for?: string };
+
+declare module "react" {
+    namespace JSX {
+        interface IntrinsicElements {
+            ${elements((name) => `Props<${name}>`).join("\n            ")}
+        }
+    }
+}
+`,
+        svelte: `import type { HTMLAttributes } from "svelte/elements";
+${imports}
+declare module "svelte/elements" {
+    interface SvelteHTMLElements {
+        ${elements((name) => `HTMLAttributes<${name}> & Settings<${name}> & { for?: string }`).join("\n        ")}
+    }
+}
+`,
+        vue: `import type { DefineComponent, HTMLAttributes } from "vue";
+${imports}
+type Component<E> = DefineComponent<HTMLAttributes & Settings<E> & { for?: string }>;
+
+declare module "vue" {
+    interface GlobalComponents {
+        ${elements((name) => `Component<${name}>`).join("\n        ")}
+    }
+}
+`,
+    };
+    for (const [name, text] of Object.entries(types)) {
+        const use = name === "elements" ? "" : `// The elements in templates: \`import type {} from "labial/${name}"\`.\n`;
+        writeFileSync(join(folder, `${name}.d.ts`), `${use}${text}`);
+    }
+}
+
 /** The code's licence, then the notices of the models and tables that are in a package, from NOTICE. */
 function licence(file, code, notice, ...names) {
     const sections = new Map([...read(notice).matchAll(/^(\S.*):\n\n((?: {4}.*\n|\n)+)/gm)]
@@ -125,4 +177,4 @@ function manifest(folder, packages, name, version) {
 
 const [, , what, ...rest] = process.argv;
 const data = (file, wasm, notice) => packed(file, readFileSync(wasm), notice);
-await { scripts, text, data, table, model, faces, licence, manifest }[what](...rest);
+await { scripts, text, data, table, model, faces, frameworks, licence, manifest }[what](...rest);

@@ -1,6 +1,5 @@
 // Finds out which weights a loaded avatar takes, and moves it. attach.d.ts documents it.
-import { heard } from "./heard.js";
-import { LabialError } from "./memory.js";
+import { LabialError, heard } from "./memory.js";
 
 /** Milliseconds in which a mouth comes to rest. */
 const CLOSING = 200;

@@ -1,5 +1,5 @@
 // Phonemes and their times from espeak-ng as WebAssembly (@echogarden/espeak-ng-emscripten), whose events have the
-// fields of espeak_EVENT. It does what tools/speak/espeak.c and export/labial/hearing/espeak.py do; a test holds them to
+// fields of espeak_EVENT. It does what tools/speak/espeak.c and export/labial/hearing/voices.py do; a test holds them to
 // each other.
 import { LabialError, shown } from "./memory.js";
 

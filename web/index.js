@@ -1,6 +1,7 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import { CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, shown } from "./memory.js";
-import { heard } from "./heard.js";
+import {
+    CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, heard, shown,
+} from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";

@@ -145,3 +145,18 @@ export function shown(value) {
     }
     return text.length <= 40 ? text : `${text.slice(0, 37)}...`;
 }
+
+/** Of the elements whose sound has ended: when it was seen first, milliseconds. */
+const ends = new WeakMap();
+
+/** Seconds of a media element's sound. Behind the sound's end, where an element's own time stands, time goes on: a track
+ * has frames behind its last phoneme, in which the mouth comes to rest. */
+export function heard(audio) {
+    if (!audio.ended) {
+        ends.delete(audio);
+        return audio.currentTime;
+    }
+    const now = performance.now();
+    if (!ends.has(audio)) ends.set(audio, now);
+    return audio.currentTime + (now - ends.get(audio)) / 1000;
+}

@@ -1,6 +1,6 @@
 // Timings that speech services report as JSON: the interpreter of the table export/labial/corpus/services.json, which
-// the build writes as table.js. It does what services.py and service_files.py of export/labial/corpus do; a test holds
-// them to each other.
+// the build writes as table.js. It does what services.py and formats.py of export/labial/corpus do; a test holds them to
+// each other.
 import { entriesOf, plain, told } from "./entries.js";
 import { LONGEST, LabialError, shown } from "./memory.js";
 import table from "./table.js";

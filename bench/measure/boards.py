@@ -12,10 +12,8 @@ from measure.core import Bench, run, tool, version
 
 #: Seconds of input that each image synthesises.
 SECONDS = 20
-
 #: Most bytes of stack of the images' callback.
 _CALLBACK_STACK = 32
-
 #: Frames per second for the share of a processor.
 RATE = 50
 
@@ -38,7 +36,6 @@ class Board:
 
 _ARM = ("arm-none-eabi-", "gcc-arm-none-eabi", "qemu-system-arm", "qemu-system-arm")
 _RISCV = ("riscv64-unknown-elf-", "gcc-riscv64-unknown-elf", "qemu-system-riscv32", "qemu-system-misc")
-
 #: All boards under QEMU, one in each row of its list.
 TOOLCHAIN = Path(__file__).parents[2] / "boards" / "toolchains" / "qemu.cmake"
 
@@ -68,7 +65,7 @@ def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
     folder = bench.build / board.preset
     run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={TOOLCHAIN}",
          f"-DLABIAL_BOARD={board.preset}", "-DCMAKE_BUILD_TYPE=Release",
-         "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF",
+         "-DLABIAL_BUILD_BENCH=ON", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_WERROR=ON",
          f"-DLABIAL_BENCH_SECONDS={SECONDS}"])
     run(["cmake", "--build", folder, "--parallel", "2"])
     return json.loads((folder / "bench" / "images.json").read_text(encoding="utf-8"))

@@ -8,6 +8,7 @@ page says when it was measured.
 from __future__ import annotations
 
 from pathlib import Path
+from statistics import fmean
 from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 
 from measure import baseline, records
@@ -15,11 +16,10 @@ from measure.boards import BOARDS
 from measure.core import Figure
 from measure.pages import Sentence, count, decimal, row, sentence, share, word
 from measure.sizes import BESIDE
-from measure.sources import Sources, Table, number
+from measure.sources import Sources, Table, Talkers, mean_and_error, number
 
 #: Columns of the boards' tables, and the host's.
 TARGETS = [board.preset for board in BOARDS]
-
 #: Sections of RESULTS.md, and their tables in order.
 TALKERS, RANDOM, UNSEEN = "Talkers left out", "Random splits", "Unseen words"
 LAUGHTER, HEARD = "Laughter: synthetic data", "Lips from sound"
@@ -33,46 +33,12 @@ BLUR, MEAN, DOMINANCE, REGRESSION = ("steps + Gaussian blur", "mean shape", "Coh
 HMM = "HMM synthesis"
 PARAMETERS = ("openness", "extension", "top", "bottom")
 
-#: Talkers of RESULTS.md who speak freely; all others say commands.
-FREE = ("a", "b")
-
 
 def of(root: Path, measured: Sequence[Figure] = ()) -> Dict[str, List[Sentence]]:
     """The sentences of each page, by its path below `root`, with the figures of bench/baseline.json, or those that were
     `measured` just now."""
     source = Sources(root, baseline.read(root / "bench" / "baseline.json"), measured, records.read(root))
     return {name: list(listed(source)) for name, listed in PAGES.items()}
-
-
-class Talkers:
-    """Correlations of a row of "Talkers left out"."""
-
-    def __init__(self, table: Table, method: str) -> None:
-        heads = list(table[method])
-        self.each = {head: number(table[method][head]) for head in heads[1 : heads.index("mean")]}
-
-    def of(self, free: bool) -> List[float]:
-        """Those of the talkers who speak freely, or of the others."""
-        return [value for talker, value in self.each.items() if (talker in FREE) == free]
-
-    @staticmethod
-    def mean(values: Sequence[float]) -> float:
-        """Their mean."""
-        return sum(values) / len(values)
-
-    @staticmethod
-    def error(values: Sequence[float]) -> float:
-        """The standard error of their mean."""
-        mean = Talkers.mean(values)
-        return float((sum((value - mean) ** 2 for value in values) / (len(values) - 1) / len(values)) ** 0.5)
-
-    def cells(self) -> List[str]:
-        """Mean of those who speak freely; mean and standard error of the others; of all."""
-        free, others, everyone = self.of(True), self.of(False), list(self.each.values())
-        found = [share(self.mean(free))]
-        for values in (others, everyone):
-            found += [share(self.mean(values)), share(self.error(values))]
-        return found
 
 
 def _talkers(source: Sources) -> Dict[str, Talkers]:
@@ -169,8 +135,6 @@ _VOICE = ("voice", "voice_frames", "voice_items", "voice_messages", "voice_plan"
 #: What pages fetch from npm, compressed, in bench/baseline.json.
 _NPM = ("a page that speaks, each script compressed", "laughter, compressed", "words, each script compressed",
         "hearing by the small model, each script compressed", "hearing by the large model, each script compressed")
-
-
 #: The states in DESIGN.md's table of modules: what it says of their parts, and of RAM beside the state.
 _STATES = {"labial_t": ("", " + workspace"),
            "labial_hear_t": (": features, network, convert, motion, fade", " + workspace"),
@@ -345,8 +309,6 @@ def hearing(source: Sources) -> Iterator[Sentence]:
 _SOUNDS = {"125 people (169 clips)": "talkers/judge", "flite's awb": "flite:awb",
            "espeak-ng's klatt4": "espeak:en-us+klatt4", "espeak-ng's f5": "espeak:en-us+f5",
            "espeak-ng's Jacky": "espeak:en-us+Jacky"}
-
-
 #: Groups of real lips and their names in the pages; methods, and the records that have them.
 _GROUPS = {"grid_singles+grid_more": "GRID", "addresses": "addresses"}
 _LIPS = {"`hear_ahead`": ("hear_ahead", "integers"), "`hear_host`": ("hear_host", "integers"),
@@ -462,11 +424,9 @@ def results(source: Sources) -> Iterator[Sentence]:
     talkers = _talkers(source)["voice"]
     free, others, everyone = talkers.of(True), talkers.of(False), list(talkers.each.values())
     yield sentence("Summary, other people: on {} labels of talkers of whom the training has nothing, the device's "
-                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), share(talkers.mean(everyone)),
-                   share(talkers.error(everyone)))
+                   "motion correlates by {} ± {} (standard error)", word(len(everyone)), *mean_and_error(everyone))
     yield sentence("by {} with {} who speak freely, by {} ± {} with {} labels of other talkers of GRID",
-                   share(talkers.mean(free)), word(len(free)), share(talkers.mean(others)),
-                   share(talkers.error(others)), word(len(others)))
+                   share(fmean(free)), word(len(free)), *mean_and_error(others), word(len(others)))
     alone = _talkers(source)["method"]
     yield sentence("Trained on s1 alone it reaches {} ± {}, and the published method {} ± {}",
                    *(figure for one in (alone, _talkers(source)["paper"]) for figure in one.cells()[3:]))
@@ -528,23 +488,9 @@ def streams(source: Sources) -> Iterator[Sentence]:
 
 #: Every page with figures.
 PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
-    "README.md": readme,
-    "DESIGN.md": design,
-    "export/RESULTS.md": results,
-    "docs/arduino.md": arduino,
-    "docs/beside.md": beside,
-    "docs/browser.md": browser,
-    "docs/esp32-hear.md": esp32_hear,
-    "docs/experiments.md": experiments,
-    "docs/figures.md": costs,
-    "docs/hearing.md": hearing,
-    "docs/laughing.md": laughing,
-    "docs/method.md": method,
-    "docs/packages.md": packages,
-    "docs/porting.md": porting,
-    "docs/python.md": python,
-    "docs/reproduction.md": reproduction,
-    "docs/servos.md": servos,
-    "docs/streams.md": streams,
-    "docs/words.md": words,
-}
+    "README.md": readme, "DESIGN.md": design, "export/RESULTS.md": results, "docs/arduino.md": arduino,
+    "docs/beside.md": beside, "docs/browser.md": browser, "docs/esp32-hear.md": esp32_hear,
+    "docs/experiments.md": experiments, "docs/figures.md": costs, "docs/hearing.md": hearing,
+    "docs/laughing.md": laughing, "docs/method.md": method, "docs/packages.md": packages, "docs/porting.md": porting,
+    "docs/python.md": python, "docs/reproduction.md": reproduction, "docs/servos.md": servos,
+    "docs/streams.md": streams, "docs/words.md": words}

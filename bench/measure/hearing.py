@@ -13,7 +13,6 @@ from measure.sizes import compile_command, sections
 
 #: The files of lib/ that hear; a program links the others only if it calls them.
 PARTS = ("hear", "hear_convert", "hear_features", "hear_motion", "hear_network", "fixed")
-
 #: Rates of sound that the images hear, samples per second.
 RATES = (16000, 24000, 44100, 48000)
 #: Words that the images read (bench/CMakeLists.txt).

@@ -99,11 +99,11 @@ def npm(bench: Bench) -> None:
     folder = bench.build / "wasm"
     toolchain = bench.source / "boards" / "toolchains" / "wasm.cmake"
     run(["cmake", "-S", bench.source, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={toolchain}", "-DCMAKE_BUILD_TYPE=Release",
-         "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF"])
+         "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF", "-DLABIAL_WERROR=ON"])
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "web" / "labial.wasm"
-    names = ("heard.js", "index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
+    names = ("index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
              "unpack.js")
     scripts = [folder / "npm" / name for name in names]
     laughter = folder / "npm-laughter" / "index.js"

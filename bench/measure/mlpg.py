@@ -17,7 +17,6 @@ UNITS, FEW, MANY = 20, 5, 25
 FRAMES = 42 * 8  #: of all channels of one unit
 
 UNIT = "instructions/frame and channel"
-
 #: Solves a unit in steps of three frames, like a stream and the boards' image: decodes the state, adds the rows, and
 #: makes a backward pass from the latest.
 SOLVE = "bench_unit_solve"

@@ -17,7 +17,6 @@ from measure.core import Bench, LeftOut, run, version
 
 #: Functions of the image itself, which are not part of the library.
 _IMAGE = re.compile(r"main|board_.*|bench_.*")
-
 #: Cycles of each core's instructions; the first that matches counts. Taken conditional branches and listed registers
 #: are added where they are counted. Cortex-M0: Arm DDI 0432, table 3-1, with the multiplier that takes one cycle;
 #: Cortex-M3: DDI 0337, table 3-1; Cortex-M4: DDI 0439, table 3-1, with a pipeline that refills in two cycles.

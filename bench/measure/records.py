@@ -24,20 +24,17 @@ from measure.sources import number, rows, tables
 
 FILE = Path("bench") / "records.json"
 RESULTS = Path("export") / "RESULTS.md"
-
 #: What the motion of the bundled models depends on, below the folder of the sources. Of the streams of FRAMES these are
 #: speech or laughter as it is measured; others change models, are cancelled, mumble or end before they begin.
 FRAMES = "tests/conformance/frames.txt"
 MOTION = ("export/models/speech_en.npz", "export/models/laughter_synthetic.npz", FRAMES)
 STREAMS = ("sentence", "phonemes", "laugh", "vowels", "consonants", "long_vowel", "short_stops", "pauses", "graded")
-
 #: Voices whose closures are counted, and one to which nothing was fitted.
 VOICES = ("flite:kal", "flite:slt", "flite:rms", "espeak:en-us", "espeak:en-gb-x-rp", "espeak:en-gb-scotland",
           "espeak:en-us+f2", "espeak:en-us+m3")  # fmt: skip
 OTHER_VOICE = "flite:awb"
 
 Figures = Dict[str, float]
-
 #: What hearing depends on besides.
 HEARD = (*(f"export/models/hear_{name}.npz" for name in ("ahead", "host", "large", "small")), "tests/c/hears.h")
 

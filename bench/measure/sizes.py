@@ -3,10 +3,12 @@ and docs/beside.md give sizes of."""
 
 from __future__ import annotations
 
+import functools
 import re
+import shutil
 import tempfile
 from pathlib import Path
-from typing import Dict, List
+from typing import Dict, List, Tuple
 
 from measure.boards import BOARDS, Board, compiler
 from measure.core import Bench, run, tool, version
@@ -16,17 +18,15 @@ from measure.core import Bench, run, tool, version
 CORE = ("stream", "channels", "units", "shape", "viterbi", "trajectory", "followers", "fade", "fixed")
 
 LEVELS = ("-Os", "-O2")
-
+#: The option by which the compiler writes frames and calls beside an object, which it does not change.
+CALLS = "-fcallgraph-info=su,da"
 #: What a program calls that moves servos by a stream and a clock.
 FACE = ("labial_face_init", "labial_face_frame", "labial_face_due", "labial_face_tick", "labial_face_soft_start",
         "labial_face_attached")
-
 #: The bundled models: their C file, and their names here.
 MODELS = {"speech": "speech_en", "laughter": "laughter_synthetic"}
-
 #: What an Arduino's processor is measured with, too.
 BESIDE = "beside, one output, 128 frames ahead"
-
 #: Parts of RAM and their bytes in C; those of the workspace add up to LABIAL_WORKSPACE_SIZE() for the voice, except for
 #: rounding to four.
 PARTS = {
@@ -41,14 +41,12 @@ PARTS = {
     "workspace: motion": "STRIDE * COUNT * sizeof(int16_t)",
     "workspace: shapes": "2 * COUNT * sizeof(labial_shape_t)",
 }
-
 #: States of the modules beside the stream, and lips beside the audio with one output and 128 frames ahead, in C.
 STATES = {
     **{f"labial_{name}_t": f"sizeof(labial_{name}_t)" for name in
        ("hear", "words", "voice", "laugh", "timings", "beside", "face", "clock")},
     BESIDE: "sizeof(labial_beside_t) + LABIAL_BESIDE_SIZE(1, 128)",
 }
-
 #: Frames that share a state in the voice, and its channels.
 STRIDE = 3
 COUNT = 8
@@ -66,6 +64,21 @@ def sections(size: str, path: Path) -> Dict[str, int]:
     return dict(zip(names.split()[:3], map(int, numbers.split()[:3])))
 
 
+def library(bench: Bench, board: Board, level: str) -> Path:
+    """The folder of the objects of lib/ for a board, each beside its call graph; compiled once."""
+    folder = bench.build / "library" / board.preset / level
+    _compile(bench.source / "lib", folder, (*compile_command(bench, board, level), CALLS))
+    return folder
+
+
+@functools.cache
+def _compile(sources: Path, folder: Path, command: Tuple[str, ...]) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for path in sorted(sources.glob("*.c")):
+        run([*command, path, "-o", folder / f"{path.stem}.o"])
+
+
 def measure(bench: Bench, board: Board) -> None:
     """Code of every file at each level, of those that play, of all, of the compiler's helpers; tables, RAM."""
     size = f"{board.prefix}size"
@@ -76,9 +89,9 @@ def measure(bench: Bench, board: Board) -> None:
         for level in LEVELS:
             text: Dict[str, int] = {}
             command = compile_command(bench, board, level)
+            folder = library(bench, board, level)
             for path in sorted((bench.source / "lib").glob("*.c")):
-                run([*command, path, "-o", Path(scratch) / f"{path.stem}.o"])
-                found = sections(size, Path(scratch) / f"{path.stem}.o")
+                found = sections(size, folder / f"{path.stem}.o")
                 variables += found["data"] + found["bss"]
                 text[path.stem] = found["text"]
                 bench.add(board.preset, f"code {level}: {path.name}", found["text"], "bytes",
@@ -87,7 +100,7 @@ def measure(bench: Bench, board: Board) -> None:
             bench.add(board.preset, f"code {level}: total", sum(text[stem] for stem in CORE), "bytes",
                       [*shown, "#", *(f"{stem}.o" for stem in CORE)], tool_version)
             bench.add(board.preset, f"code {level}: all of lib", sum(text.values()), "bytes", shown, tool_version)
-            objects = [Path(scratch) / f"{stem}.o" for stem in CORE]
+            objects = [folder / f"{stem}.o" for stem in CORE]
             bench.add(board.preset, f"code {level}: compiler's helpers", _helpers(bench, board, objects), "bytes",
                       [*shown, "#", "members", "of", "libgcc.a", "that", "these", "link"], tool_version)
         command = compile_command(bench, board, "-Os")

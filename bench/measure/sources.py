@@ -6,13 +6,17 @@ import os
 import re
 import tempfile
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import Dict, List, Mapping, Sequence, Tuple
 
 from measure.core import Figure, run
+from measure.pages import share
 
 #: Cells of a row by the head of the column, and the rows of a table by their first cell.
 Row = Dict[str, str]
 Table = Dict[str, Row]
+#: Talkers of RESULTS.md who speak freely; all others say commands.
+FREE = ("a", "b")
 
 
 def cells(line: str) -> List[str]:
@@ -66,6 +70,28 @@ class Results:
         """The rows of the only table of a section."""
         (table,) = rows(self._sections[section])
         return table
+
+
+class Talkers:
+    """Correlations of a row of the tables of talkers left out, in export/RESULTS.md."""
+
+    def __init__(self, table: Table, method: str) -> None:
+        heads = list(table[method])
+        self.each = {head: number(table[method][head]) for head in heads[1 : heads.index("mean")]}
+
+    def of(self, free: bool) -> List[float]:
+        """Those of the talkers who speak freely, or of the others."""
+        return [value for talker, value in self.each.items() if (talker in FREE) == free]
+
+    def cells(self) -> List[str]:
+        """Mean of those who speak freely; mean and standard error of the others; of all."""
+        free, others, everyone = self.of(True), self.of(False), list(self.each.values())
+        return [share(fmean(free)), *mean_and_error(others), *mean_and_error(everyone)]
+
+
+def mean_and_error(values: Sequence[float]) -> List[str]:
+    """The mean, and its standard error."""
+    return [share(fmean(values)), share(stdev(values) / len(values) ** 0.5)]
 
 
 class Sources:

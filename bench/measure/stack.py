@@ -9,7 +9,7 @@ from typing import Dict, List, Set, Tuple
 
 from measure.boards import Board, compiler
 from measure.core import Bench, run, version
-from measure.sizes import LEVELS, compile_command
+from measure.sizes import CALLS, LEVELS, compile_command, library
 
 #: The node of a call through a pointer: to the program's callback, whose stack does not count, or from the follower of
 #: voices to its words.
@@ -118,13 +118,12 @@ def measure(bench: Bench, board: Board) -> None:
     tool_version = version(compiler(board))
     for level in LEVELS:
         graph = CallGraph()
-        command = [*compile_command(bench, board, level), "-fcallgraph-info=su,da"]
+        command = [*compile_command(bench, board, level), CALLS]
         with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
             # The board's memcpy and memset stand for those of whatever C library a program has.
-            for path in (*sorted((bench.source / "lib").glob("*.c")), bench.source / "boards" / "memory.c"):
-                own = ["-fno-tree-loop-distribute-patterns"] if path.stem == "memory" else []
-                run([*command, *own, path, "-o", Path(scratch) / f"{path.stem}.o"])
-            for found in sorted(Path(scratch).glob("*.ci")):
+            run([*command, "-fno-tree-loop-distribute-patterns", bench.source / "boards" / "memory.c", "-o",
+                 Path(scratch) / "memory.o"])
+            for found in (*sorted(library(bench, board, level).glob("*.ci")), Path(scratch) / "memory.ci"):
                 graph.add_ci(found.read_text(encoding="utf-8"))
         graph.link_words()
         add_archive(graph, board, list(board.options))

@@ -33,8 +33,6 @@ GOALS = (
     ("node, rendered for the first time, us per frame", "wasm", "speech: rendered whole, the first time", 10, False),
     (f"x86-64, times real time at {RATE} frames/s", "host", f"speech: speed at {RATE} frames/s", 200, True),
 )
-
-
 #: Targets with their own columns, by the column's title.
 COLUMNS: Dict[str, str] = {**{board.preset: board.core for board in BOARDS}, "host": "x86-64"}
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "grow.h"
+#include "common.h"
 #include "timings.h"
 
 typedef struct {

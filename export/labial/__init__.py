@@ -31,14 +31,12 @@ __version__ = "0.4.0"
 if TYPE_CHECKING:
     from labial.runtime.beside import Beside
     from labial.runtime.face import Face
-    from labial.runtime.hearing import Hearing
-    from labial.runtime.mixing import with_sound
+    from labial.runtime.hearing import Hearing, with_sound
     from labial.runtime.models import Model
-    from labial.runtime.render import read_timings, render
+    from labial.runtime.render import character_timings, phonemes, read_timings, render, word_timings
     from labial.runtime.rig import Rig
     from labial.runtime.stream import Frame, Latency, Stream
     from labial.runtime.voice import Voice
-    from labial.runtime.words import character_timings, phonemes, word_timings
 
     speech_en: Model
     laughter_synthetic: Model
@@ -47,9 +45,9 @@ __all__ = ["Beside", "Face", "Frame", "Hearing", "Latency", "Model", "Rig", "Str
            "phonemes", "read_timings", "render", "with_sound", "word_timings", *BUNDLED]
 
 _HOMES = {"Beside": "beside", "Face": "face", "Frame": "stream", "Hearing": "hearing", "Latency": "stream",
-          "Model": "models", "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "words",
-          "phonemes": "words", "word_timings": "words", "read_timings": "render", "render": "render",
-          "with_sound": "mixing"}  # fmt: skip
+          "Model": "models", "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "render",
+          "phonemes": "render", "word_timings": "render", "read_timings": "render", "render": "render",
+          "with_sound": "hearing"}  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:

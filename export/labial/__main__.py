@@ -23,9 +23,7 @@ from labial.program import Parser, check_output, complain, drop_output
 
 def parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """The parser of a command line. It imports only the module of the command that `arguments` name."""
-    top = Parser(
-        prog="labial", description="Trains lip-motion models and exports them for the C library."
-    )
+    top = Parser(prog="labial", description="Trains lip-motion models and exports them for the C library.")
     top.add_argument("--version", action="version", version=f"labial {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, (module, text) in COMMANDS.items():

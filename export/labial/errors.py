@@ -7,6 +7,9 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Iterable, Iterator, List, Optional, Union
 
+#: A file's path.
+PathLike = Union[str, os.PathLike[str]]
+
 
 class LabialError(Exception):
     """An input cannot be used; the message says what and where."""
@@ -15,7 +18,7 @@ class LabialError(Exception):
 class DataError(LabialError):
     """A file's content is wrong. The message begins with ``file:line:`` (or ``file:``)."""
 
-    def __init__(self, path: Union[str, os.PathLike[str]], line: Optional[int], message: str) -> None:
+    def __init__(self, path: PathLike, line: Optional[int], message: str) -> None:
         where = f"{os.fspath(path)}:{line}" if line is not None else os.fspath(path)
         super().__init__(f"{where}: {message}")
 

@@ -22,14 +22,15 @@ typedef struct {
 /* The queue of phonemes that were pushed and whose frames are not all accepted yet (units.c). */
 typedef struct {
     uint8_t head, count;
-    uint8_t begins;      /* the next frame is the first of a solution */
-    uint8_t rested;      /* the oldest segment is a pause that a solution began with */
-    uint8_t labelled;    /* segments that have labels, the oldest ones */
-    uint16_t remainder;  /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
-    uint32_t taken;      /* frames of the oldest segment that were accepted */
-    uint32_t frames;     /* of all segments, not yet accepted */
-    uint32_t unlabelled; /* frames of the last of these that have no label yet */
+    uint8_t begins;                       /* the next frame is the first of a solution */
+    uint8_t rested;                       /* the oldest segment is a pause that a solution began with */
+    uint8_t labelled;                     /* segments that have labels, the oldest ones */
     uint8_t labels[2 * LABIAL_REACH + 1]; /* phonemes of the frames around the last accepted one */
+    uint16_t remainder;            /* of all durations so far: a part of a frame, in 1/1000, starting from one half */
+    uint32_t taken;                /* frames of the oldest segment that were accepted */
+    uint32_t frames;               /* of all segments, not yet accepted */
+    uint32_t unlabelled;           /* frames of the last of these that have no label yet */
+    uint32_t since[LABIAL_MODELS]; /* frames pushed since the last one of the model in each slot, modulo 2^32 */
     labial_segment_t segments[LABIAL_QUEUE];
 } labial_units_t;
 
@@ -82,9 +83,9 @@ typedef struct {
 
 /* An accepted frame (stream.c). */
 typedef struct {
-    uint32_t contacts;               /* bit k: channel k of the model is in contact */
     int16_t target[LABIAL_CHANNELS]; /* positions of the model's channels */
     uint8_t marks;
+    uint32_t contacts; /* bit k: channel k of the model is in contact */
 } labial_frame_t;
 
 /* The factors that a channel keeps for its next backward pass, the latest last; a structure, so that it is copied
@@ -95,9 +96,9 @@ typedef struct {
 
 /* State of one channel (channels.c). */
 typedef struct {
+    labial_search_t search;
     labial_solver_t solver;
     labial_kept_t kept;
-    labial_search_t search;
 } labial_progress_t;
 
 #if LABIAL_PAPER
@@ -162,8 +163,10 @@ typedef struct {
 #define LABIAL_MAGIC_ 0x4c41424cu /* "LABL" */
 #define LABIAL_DELAY_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
-/* The stream's state (stream.c). Small members come first, where small instructions reach them. */
+/* The stream's state (stream.c). Small members come first, where small instructions reach them, behind the models, whose
+ * place an index alone tells. */
 typedef struct {
+    const labial_model_t *models[LABIAL_MODELS];
     uint32_t magic;  /* set while the stream is initialised */
     uint8_t slot;    /* model of the next push */
     uint8_t ended;   /* no more phonemes will come */
@@ -172,14 +175,13 @@ typedef struct {
     uint8_t resting; /* the face is at rest or on its way there: motion fades in from it */
     uint8_t held;    /* ticks without a frame since the last frame or push, up to as many as the face is held */
     labial_articulation_t articulation;
+    labial_channels_t channels;
     uint32_t frame;   /* number of the next frame */
     uint32_t pending; /* frames pushed and not yet delivered */
     /* Bit i is that of the frame that was taken i ticks ago; what was taken before a cancel moves beyond the delay before
      * a frame is due. */
     uint32_t begins[LABIAL_DELAY_WORDS_];  /* a solution begins with the frame */
     uint32_t touches[LABIAL_DELAY_WORDS_]; /* a channel is in contact */
-    labial_channels_t channels;
-    const labial_model_t *models[LABIAL_MODELS];
     void (*callback)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
     void *user;
     labial_shape_t *shape;   /* of the phoneme that the latest frame belongs to, in the workspace */

@@ -64,7 +64,7 @@ extern "C" {
  * leaf: `five` for yes, the next byte for no. Of kind 1, yes leads to the leaf `five`, and the node for no follows; of
  * kind 2, no leads to it and the node for yes follows. Of kind 3, `five` and the next byte are the length of the part
  * for yes, which follows, and behind it that for no. A leaf is a place in its letter's part of `leaves`. The questions
- * are those of export/labial/words/questions.py.
+ * are those of export/labial/words/trees.py.
  *
  * An exception has the second and third byte of its word's hash, and then two bytes for each label to be changed, the
  * higher first: last << 15 | label << 5 | letter. The first byte of the hash is its bucket. */

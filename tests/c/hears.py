@@ -1,11 +1,13 @@
 """Makes anew what test_hear*.c and the device tests hear: a small model of random weights, ``hear_fixture.c`` and
-``hear_fixture.h``, and what the exporter's integers make of sounds, ``hears.h``.
+``hear_fixture.h``, and what the exporter's integers make of sounds, ``hears.h``; and what the exporter's laughs are,
+``laughs.h`` for test_laugh.c.
 
     PYTHONPATH=export python3 tests/c/hears.py tests/c
 """
 
 from __future__ import annotations
 
+import struct
 import sys
 import zlib
 from pathlib import Path
@@ -13,11 +15,13 @@ from typing import Dict, List
 
 import numpy as np
 
+from labial.corpus.phonesets import LAUGHTER
 from labial.files.faps import CHANNELS
 from labial.hearing import emit, integer
 from labial.hearing.convert import RATES
 from labial.hearing.model import HearingModel, Memory
 from labial.hearing.quantise import HearingTables, quantise
+from labial.reference.laughs import pieces
 
 UNITS = 8
 MEMORIES = (Memory(2, 1, 1), Memory(2, 0, 1), Memory(1, 1, 2))
@@ -147,10 +151,34 @@ def table() -> str:
     return HEAD + "".join(rows) + HEAD_AGAIN + again() + "};\n"
 
 
+HEAD_LAUGHS = """/* Written by hears.py from export/labial/reference/laughs.py; do not edit: milliseconds, intensity,
+ * seed; number of phonemes, CRC-32. */
+static const struct {
+    uint32_t milliseconds, intensity, seed, count, crc;
+} laughs[] = {
+"""
+LAUGHS = 240
+#: Lengths in milliseconds by turns: of a breath, of a pulse, of one and of several trains, of several bouts.
+LAUGH_LENGTHS = (0, 19, 45, 130, 300, 520, 777, 1100, 1850, 4000, 9000, 60000)
+
+
+def laughs() -> str:
+    """The file: for each laugh what was asked for, its phonemes' number, and their CRC-32 as bytes and uint16."""
+    rows = []
+    for number in range(LAUGHS):
+        length = LAUGH_LENGTHS[number % len(LAUGH_LENGTHS)] + number
+        intensity, seed = number * 37 % 257, number * 2654435761 % 2**32
+        laugh = [(LAUGHTER.phonemes.index(label), ms) for label, ms in pieces(length, intensity, seed)]
+        crc = zlib.crc32(b"".join(struct.pack("<BH", *piece) for piece in laugh))
+        rows.append(f"    {{ {length}, {intensity}, {seed}u, {len(laugh)}, 0x{crc:08x}u }},\n")
+    return HEAD_LAUGHS + "".join(rows) + "};\n"
+
+
 def files() -> Dict[str, str]:
     """The files by their names."""
     own = tables()
-    return {"hear_fixture.h": emit.header(own), "hear_fixture.c": emit.source(own), "hears.h": table()}
+    return {"hear_fixture.h": emit.header(own), "hear_fixture.c": emit.source(own), "hears.h": table(),
+            "laughs.h": laughs()}
 
 
 if __name__ == "__main__":

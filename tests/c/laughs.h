@@ -1,4 +1,4 @@
-/* Written by known_laughs.py from export/labial/reference/laughs.py; do not edit: milliseconds, intensity,
+/* Written by hears.py from export/labial/reference/laughs.py; do not edit: milliseconds, intensity,
  * seed; number of phonemes, CRC-32. */
 static const struct {
     uint32_t milliseconds, intensity, seed, count, crc;

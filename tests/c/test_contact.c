@@ -1,6 +1,6 @@
 /*
  * test_contact.c - contact and rest, from phonemes to targets: cases worked by hand from the rules of labial/model.h, and
- * random streams against oracle_shape.c, which puts contact upon the whole stream phoneme by phoneme.
+ * random streams against oracle_steps.c, which puts contact upon the whole stream phoneme by phoneme.
  */
 #include "suite.h"
 

@@ -315,7 +315,7 @@ static double least_guess_error(double from, double to)
  * as good, and bits that a step does without. */
 TEST(reciprocals_have_24_bits)
 {
-    const unsigned blocks = LABIAL_TEST_SHARE > 10 ? 1 : 16; /* each of which shares the first step */
+    const unsigned blocks = LABIAL_TEST_SHARE > 2 ? 1 : 16; /* each of which shares the first step */
     for (unsigned i = 64; i < 128; i++) {
         const double from = i / 64.0, to = (i + 1) / 64.0, guessed = least_guess_error(from, to);
         const double stepped = guessed * guessed + from / 65536.0;

@@ -1,6 +1,6 @@
 /*
  * test_viterbi.c - the search for the likeliest state path, against exhaustive search and against the dense programme of
- * oracle_viterbi.c. Costs are those of labial/model.h.
+ * oracle_steps.c. Costs are those of labial/model.h.
  */
 #include "suite.h"
 

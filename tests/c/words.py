@@ -31,7 +31,8 @@ U.S.based a.b1 x.yz a. I. B. Mr. Mrs Ms. MR dr. Dr St. prof Prof. jr Jr. sr vs. 
 1,000 1,234,567 12,34 1,2345 1,234,56 0,123 999,999,999 1,000,000,000 123456789012 007 00 01 0.5 3.14 3. .5
 1.2.3 1,234.5 12:30 1/2 2-3 1st 2nd 3rd 4th 5th 8th 9th 11th 12th 13th 20th 21st 22ND 40th 100th 101st 1000th
 1000000th 0th 3Rd 1stx 2ndly 1st2 007th 5x x5 24h [laughs] [a]b a[b]c [open x<tag/>y <open ] > Привет 你好 日本語
-hi\u0964 a\u060cb x\u05bey \u061f\u0964 5\u06d4 한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ na\u036fme \u0180 a\u0180 \u07ff \u0800 \uffff \U00010000
+hi\u0964 a\u060cb x\u05bey \u061f\u0964 5\u06d4
+한국어 ελ Привет! aПривет中 [中] 😀 😀! ♥ na\u036fme \u0180 a\u0180 \u07ff \u0800 \uffff \U00010000
 \u0080 rock-n-roll and/or snake_case a.b,c;d (a)(b)
 Zoë Noël Citroën résumé fiancée façade ﬁne ﬂow ﬀ œuf Æon 1999 2005 1905 1900 2000 2100 1990s 80s 80's 2000s 20s
 2024-03-05 3/5/2024 13/5/2024 3/5/24 5.3.2024 12-25-2024 2024-13-05 0/0/2024 555-1234 1-800-555-0199 10-20 1914–1918
@@ -39,7 +40,8 @@ Zoë Noël Citroën résumé fiancée façade ﬁne ﬂow ﬀ œuf Æon 1999 200
 $5 $1 $5.50 $0.99 $.50 $1.5 $1.01 $00.50 $2M $10k $3bn $5k- $5/hour €20 £3.20 £1.01 ¥500 ¥5.50 ₹1,000 5€ 1€ 50¢
 $1,250 $1234567890123456 $5-$10 $5million 5km 1km 5kmx 100km/h 16GB 5M 2bn 6in 1in 3A 20C 25°C 98.6°F 1° 5m² 20m/s
 60mph 3ft 1ft 3½ ½ ¼ ¾ 3x4 3×4 -5 −5 -$5 (-5) a-5 #1 #a <3 <b>x</b> 50 999,999,999,999,999 9999999999999999
-FBI NBA CIA VIP PhD PhDs TVs FBI's FBIs CEO's NASA's USAs MHz Ghz's Xiv's XIV's II's STOP WHO IRS SUV NYPD HELLO X's A's As As' H's DVDs AT&T
+FBI NBA CIA VIP PhD PhDs TVs FBI's FBIs CEO's NASA's USAs MHz
+Ghz's Xiv's XIV's II's STOP WHO IRS SUV NYPD HELLO X's A's As As' H's DVDs AT&T
 Q&A A+ A-1 B2B MP3 YMCA UNESCO ESPN JPEG json Wi-Fi WiFi Jan. Sept Tues. Mar approx. www.example.com x@b.io .com
 https://a.org/b-c_d node.js a.b.c end.Start wait...what (sighs) (pause) (pauses) (yes) *smiles* *leans *really*
 **bold** [a]b (laughing)x *x ok Ok OK omg IDK btw fyi TBH pls plz thx NATO uber haha Hahaha hehe ugh Whoa eww yuck lemme

@@ -9,7 +9,6 @@
 
 #include "fuzz.h"
 #include "labial/face.h"
-#include "rigs.h"
 
 #define OUTPUTS 3u
 

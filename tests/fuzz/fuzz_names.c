@@ -1,8 +1,8 @@
 /*
- * fuzz_names.c - any bytes as labels of phonemes, in the names of both bundled models: labels.h says what must hold. A
+ * fuzz_names.c - any bytes as labels of phonemes, in the names of both bundled models: fuzz.h says what must hold. A
  * byte 255, which no UTF-8 has, ends a label.
  */
-#include "labels.h"
+#include "fuzz.h"
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 

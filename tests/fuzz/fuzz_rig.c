@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "rigs.h"
 
 #define OUTPUTS 4
 

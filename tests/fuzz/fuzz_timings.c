@@ -11,7 +11,6 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "labels.h"
 #include "labial/labial.h"
 #include "labial/laugh.h"
 #include "labial/timings.h"

@@ -1,6 +1,7 @@
 /*
  * make_seeds.c - what the fuzz targets begin with, as their bytes: the conformance streams, the bundled models, a rig
- * with the frames of a sentence, packets of lips, and all labels that are known. The seeds of fuzz_timings are files of seeds/.
+ * with the frames of a sentence, packets of lips, words, and all labels that are known. The seeds of fuzz_timings are
+ * files of seeds/.
  *
  *     make_seeds FOLDER espeak.tsv     writes FOLDER/fuzz_stream/NAME and so on; the folders are there already
  */
@@ -251,6 +252,27 @@ static void make_sounds(void)
     }
 }
 
+/* Words as fuzz_words.c reads them: a sentence, numbers and what is read like them, the ends of characters. */
+static void make_words(void)
+{
+    static const struct {
+        const char *name, *bytes;
+        size_t size;
+    } seeds[] = {
+#define SEED(name, bytes) { name, bytes, sizeof bytes - 1u }
+        SEED("sentence", "\000\006\012(\001Hello,\006<2\001world!\010<2\000[laughs]\002Z\036\000go"),
+        SEED("numbers", "\360\014\000Z\0011,234,567.89\004Z\036\00022nd\005\036\036\000U.S.A\004\036\036\002e.g."
+                        "\011\036\036\000iPhone&TV\003\036\310\001007"),
+        SEED("characters", "\020\011\012<\002strengths\006<2\005na\303\257ve\014<2\001"
+                           "\320\237\321\200\320\270\320\262\320\265\321\202"),
+    };
+    for (unsigned i = 0; i < COUNT(seeds); i++) {
+        FILE *file = create("fuzz_words", seeds[i].name);
+        fwrite(seeds[i].bytes, 1, seeds[i].size, file);
+        finish(file);
+    }
+}
+
 /* The labels of espeak-ng's voices, which are the first column of a table, and all that the bundled models know. */
 static void make_labels(const char *table)
 {
@@ -318,6 +340,7 @@ int main(int argc, char **argv)
     make_packets();
     make_messages();
     make_sounds();
+    make_words();
     make_labels(argv[2]);
     return 0;
 }

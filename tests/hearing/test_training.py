@@ -15,10 +15,10 @@ import torch
 from labial.__main__ import main
 from labial.errors import LabialError
 from labial.hearing import features, network, prepared, quantise, targets, train
-from labial.hearing.learner import Learner, Remembered, model_of, restore, rounded
 from labial.hearing.model import CLASSES, PLANS, HearingModel, Memory, load
 from labial.hearing.prepared import Prepared
 from labial.hearing.targets import Closure
+from labial.hearing.train import Learner, Remembered, model_of, restore, rounded
 
 NO_CLOSURE = Closure(np.zeros(13, np.float32), np.zeros(13, np.float32))
 #: Files with a name of its own each, of which some are held out (labial.hearing.prepared.is_held).

@@ -14,12 +14,14 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second)
     return (unsigned)Frama_C_interval(1, 1000);
 }
 
-void labial_fade_begin(labial_fade_t *fade, unsigned length, int goes_on)
+void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on)
 {
     /*@ assert 1 <= length <= 1000; */
+    /*@ assert closing <= 1000; */
     (void)goes_on;
     fade->step = 1;
     fade->length = (uint16_t)length;
+    fade->closing = (uint16_t)closing;
 }
 
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
@@ -27,11 +29,6 @@ void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
     fade->pose[0] = motion ? motion[LABIAL_CHANNELS - 1] : (int16_t)0;
     FILL(fade->pose);
     fade->step = any_uint16;
-}
-
-void labial_fade_stand(labial_fade_t *fade)
-{
-    fade->step = 0;
 }
 
 int labial_fade_rests(const labial_fade_t *fade)
@@ -42,12 +39,6 @@ int labial_fade_rests(const labial_fade_t *fade)
 int labial_fade_opening(const labial_fade_t *fade)
 {
     return fade->pose[LABIAL_CHANNELS - 1] + any_int16;
-}
-
-void labial_fade_close(labial_fade_t *fade, unsigned closing)
-{
-    /*@ assert closing <= LABIAL_FADE_STEPS; */
-    fade->closing = (uint16_t)closing;
 }
 
 void labial_fade_faps(const labial_fade_t *fade, int16_t faps[LABIAL_CHANNELS])

@@ -2,7 +2,7 @@
 # statements of all functions that it reaches at least REACHED %; it must find as many alarms, and take as many assertions
 # unproven, as stated, no more and no fewer, so that what the documentation says of them stays true.
 #
-#   cmake -D FRAMA_C=frama-c -D "OPTIONS=-eva-precision;3;..." -D DRIVER=prove_rig.c -D "SOURCES=lib/rig.c"
+#   cmake -D FRAMA_C=frama-c -D "OPTIONS=-eva-precision;3;..." -D DRIVER=prove_given.c -D "SOURCES=lib/rig.c"
 #         -D ALARMS=0 -D ASSERTED=0 -D REACHED=98 -P prove.cmake
 cmake_minimum_required(VERSION 3.22...3.31)
 

@@ -10,6 +10,7 @@
 #include "any_model.h"
 #include "fixed.h"
 #include "followers.h"
+#include "shape.h"
 #include "units.h"
 #include "viterbi.h"
 
@@ -22,7 +23,9 @@ int prove_faps(void);
 int prove_fixed(void);
 int prove_followers(void);
 int prove_laugh(void);
+int prove_model(void);
 int prove_result(void);
+int prove_shape(void);
 int prove_units(void);
 int prove_viterbi(void);
 
@@ -57,16 +60,27 @@ int prove_clock(void)
     return 0;
 }
 
-/* Any model, also one that labial_model_check() refuses, whose phonemes are there. */
+/* Any model, also one that labial_model_check() refuses, whose phonemes are there; and any stream of models that have a
+ * frame rate. */
 int prove_cost(void)
 {
     static labial_phoneme_t some[255];
-    labial_model_t model;
+    static labial_t stream;
+    static labial_model_t model;
+    unsigned i;
     FILL(some);
     FILL(model);
     model.phonemes = some;
     labial_model_cost(0);
-    return (int)labial_model_cost(&model);
+    labial_model_cost(&model);
+    labial_workspace_size(OR_NULL(const labial_model_t *, &model));
+    Frama_C_make_unknown((char *)&stream, sizeof stream);
+    model.frames_per_second = (uint16_t)Frama_C_interval(1, 250);
+    for (i = 0; i < LABIAL_MODELS; i++)
+        stream.models[i] = &model;
+    stream.slot = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
+    labial_uses(OR_NULL(const labial_t *, &stream), OR_NULL(const labial_model_t *, &model));
+    return (int)labial_latency(OR_NULL(const labial_t *, &stream)).frames;
 }
 
 /* Any two arrays, or null. */
@@ -165,7 +179,7 @@ int prove_units(void)
                               (uint32_t)Frama_C_interval(0, LABIAL_DURATION_MAX), (uint32_t)Frama_C_interval(1, 250));
         labial_units_take(&units, models, any_int, &taken);
         labial_units_left(&units, models);
-        labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1));
+        labial_units_uses(&units, (unsigned)Frama_C_interval(0, LABIAL_MODELS - 1), any_uint32);
         labial_units_next(&units, models, any_int, &spoken);
         if (any_int)
             labial_units_reset(&units);
@@ -197,5 +211,143 @@ int prove_viterbi(void)
     for (count = 1; count < LABIAL_SEARCHED; count++)
         search_among(count, count);
     search_among(LABIAL_SEARCHED, LABIAL_STATES_MAX);
+    return 0;
+}
+
+/* ---- Models ------------------------------------------------------------------------------------------------------ */
+
+/* Any counts and values, pointers null or not. */
+
+/* With one number of channels, or those that no model has: EVA, which sees a number and the tables of the channels apart,
+ * sees then whose tables are there. */
+static void check_with(labial_model_t *model, int least, int most)
+{
+    model->channel_count = (uint8_t)Frama_C_interval(least, most);
+    model->pair_keys = model->contacts = 0;
+    model->floors = 0;
+    labial_model_check(model);
+    model->floors = floors;
+    labial_model_check(model);
+    model->contacts = contacts;
+    labial_model_check(model);
+    model->pair_keys = pair_keys;
+    labial_model_check(model);
+}
+
+int prove_model(void)
+{
+    labial_model_t model;
+    FILL(phonemes);
+    FILL(components);
+    FILL(pair_keys);
+    FILL(floors);
+    FILL(contacts);
+    FILL(emissions);
+    FILL(states);
+    FILL(transitions);
+    FILL(channels);
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++) {
+        channels[i].emissions = OR_NULL(const labial_emission_t *, emissions);
+        channels[i].states = OR_NULL(const labial_state_t *, states);
+        channels[i].transitions = OR_NULL(const labial_transition_t *, transitions);
+        channels[i].initials = OR_NULL(const uint8_t *, initials);
+    }
+    FILL(model);
+    model.phonemes = OR_NULL(const labial_phoneme_t *, phonemes);
+    model.components = OR_NULL(const labial_component_t *, components);
+    model.shapes = OR_NULL(const int8_t *, shapes);
+    model.kernels = OR_NULL(const uint32_t *, kernels);
+    model.pairs = OR_NULL(const int8_t *, shapes);
+    model.protrusion = OR_NULL(const labial_protrusion_t *, &protrusion);
+    model.channels = OR_NULL(const labial_channel_t *, channels);
+    labial_model_check(0);
+    /*@ loop unroll 14; */
+    for (int i = 0; i <= LABIAL_CHANNELS; i++)
+        check_with(&model, i, i);
+    check_with(&model, LABIAL_CHANNELS + 1, 255);
+    return 0;
+}
+
+/* ---- Shapes ------------------------------------------------------------------------------------------------------ */
+
+/* Any model, phonemes, duration and neighbours; any shape, and any frame that units.c may take, with labels as far
+ * as the kernels of a checked model reach and no farther. Phonemes with one to eight components are taken one by
+ * one, as are one and two knots of pairs, and kernels of every stride and number of taps. */
+
+static labial_model_t shaped;
+
+static void select_among(int count, int knots)
+{
+    labial_spoken_t spoken;
+    labial_selection_t selection = { 0 }; /* as labial_init() makes it */
+    labial_shape_t shape[LABIAL_CHANNELS];
+    FILL(shape); /* the workspace */
+    selection.shape = shape;
+    spoken.slot = any_uint8;
+    spoken.phoneme = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.previous = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.next = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    spoken.ms = any_uint16;
+    any_phonemes(count);
+    shaped.pair_knots = (uint8_t)knots;
+    labial_shape_select(&shaped, &spoken, &selection);
+    labial_shape_select(&shaped, &spoken, &selection);
+}
+
+/* Any frame. */
+static void take(void)
+{
+    labial_taken_t taken;
+    labial_shape_t shape[LABIAL_CHANNELS];
+    uint8_t labels[2 * LABIAL_REACH + 1];
+    int16_t target[LABIAL_CHANNELS];
+    int i;
+    FILL(target); /* the workspace, which a reset sets to zero: EVA cannot tell that a shaped's channels were written */
+    for (i = 0; i < LABIAL_CHANNELS; i++)
+        shape[i].knots[0] = any_position();
+    for (i = 0; i < LABIAL_CHANNELS; i++)
+        shape[i].knots[1] = any_position();
+    for (i = 0; i < 2 * LABIAL_REACH + 1; i++)
+        labels[i] = (uint8_t)Frama_C_interval(0, LABIAL_PHONEMES_MAX - 1);
+    taken.labels = labels + LABIAL_REACH;
+    taken.share = (uint16_t)Frama_C_interval(0, 16384);
+    taken.slot = any_uint8;
+    taken.is_first = (uint8_t)Frama_C_interval(0, 1);
+    taken.is_open = (uint8_t)Frama_C_interval(0, 1);
+    taken.rest = (uint8_t)Frama_C_interval(0, LABIAL_REST_FRAMES);
+    taken.marks = any_uint8;
+    labial_shape_target(&shaped, shape, &taken, target);
+}
+
+/* Kernels of every length and place with this stride: `room` taps at most to either side of the frame. */
+static void aim(int stride, int room)
+{
+    int taps;
+    shaped.kernel_stride = (uint8_t)stride;
+    /*@ loop unroll 32; */
+    for (taps = 1; taps <= LABIAL_KERNEL_TAPS_MAX && taps <= 2 * room + 1; taps++) {
+        shaped.kernel_taps = (uint8_t)taps;
+        shaped.kernel_behind =
+            (uint8_t)Frama_C_interval(taps - 1 > room ? taps - 1 - room : 0, taps > room ? room : taps - 1);
+        take();
+    }
+}
+
+int prove_shape(void)
+{
+    int count, knots, stride;
+    any_model(&shaped, 1);
+    /*@ loop unroll 8; */
+    for (count = 1; count <= LABIAL_PHONEME_COMPONENTS_MAX; count++)
+        for (knots = 1; knots <= 2; knots++)
+            select_among(count, knots);
+    shaped.kernel_taps = shaped.kernel_behind = 0;
+    take();
+    shaped.kernel_taps = 1;
+    take();
+    aim(0, LABIAL_KERNEL_TAPS_MAX - 1);
+    /*@ loop unroll 20; */
+    for (stride = 1; stride <= LABIAL_REACH; stride++)
+        aim(stride, LABIAL_REACH / stride);
     return 0;
 }

@@ -95,7 +95,6 @@ static void pass(int stride)
     channels.stepping = (uint8_t)Frama_C_interval(0, LABIAL_CHANNELS);
     for (i = 0; i <= LABIAL_DELAY(stride); i++)
         channels.slots[i] = (uint8_t)Frama_C_interval(0, LABIAL_MODELS - 1);
-    labial_channels_uses(&channels, any_unsigned);
     if (labial_channels_due(&channels, models, frame))
         channels.phase = (uint8_t)(frame[0] + frame[LABIAL_CHANNELS - 1] > 0 ? 0 : channels.phase);
     if (any_int)

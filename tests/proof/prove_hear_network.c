@@ -1,15 +1,95 @@
 /*
- * Networks of the sizes of hear_small and of hear_large, with any weights, biases and shifts, after any number of frames:
- * any features, any memory. All tables are as long as these sizes ask for, and the workspace ends with the last row.
- * Scores and poses of any number of classes.
+ * prove_hear_network.c - the steps of hearing without stand-ins: prove_NAME() is the driver of lib/NAME.c.
  */
-#include "hear_parts.h"
-
 #include <string.h>
 
 #include "hear_large.h"
+#include "hear_parts.h"
 #include "hear_small.h"
 #include "prove.h"
+
+/* ---- The conversion of rates ------------------------------------------------------------------------------------- */
+
+/* Any rate; for each that there is, any samples, the first one and others at any place of the ring, at every
+ * phase: those of one distance from the grid together, so that the filter's magnitudes add up to what they are. */
+
+static labial_hear_convert_t convert;
+static int16_t out[LABIAL_HEAR_CONVERTED_MAX];
+
+/* Any sample at the phases from `least` to `most`. */
+static void convert_at(unsigned least, unsigned most)
+{
+    FILL(convert.past);
+    convert.at = (uint8_t)Frama_C_interval(0, LABIAL_HEAR_TAPS_);
+    labial_hear_convert_last(&convert);
+    convert.phase = (uint16_t)Frama_C_interval((int)least, (int)most);
+    labial_hear_convert(&convert, any_int16, out);
+}
+
+static void convert_from(uint32_t rate)
+{
+    unsigned stride, point, points;
+    if (labial_hear_convert_init(&convert, rate) != LABIAL_OK || convert.reach == 0)
+        return;
+    stride = convert.spacing * 10u;
+    points = convert.spacing + convert.step / 10u;
+    /*@ loop unroll 100; */
+    for (point = convert.spacing; point <= points; point++)
+        convert_at(point == convert.spacing ? stride : 10u * point - 5u,
+                   point == points ? stride + convert.step - 1u : 10u * point + 4u);
+}
+
+int prove_hear_convert(void)
+{
+    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
+    unsigned i;
+    labial_hear_convert_init(&convert, any_uint32);
+    /*@ loop unroll 8; */
+    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
+        convert_from(rates[i]);
+    return 0;
+}
+
+/* ---- Features ---------------------------------------------------------------------------------------------------- */
+
+/* Any window of samples and any level that a stream can have; any sample, the first one or at any place of a
+ * window. */
+
+static void any_level(labial_hear_level_t *level)
+{
+    level->level = Frama_C_interval(LABIAL_HEAR_LEVEL_MIN / 256 * LABIAL_HEAR_LEVEL_ONE, 46 * LABIAL_HEAR_LEVEL_ONE);
+    level->quietest = Frama_C_interval(LABIAL_HEAR_LEVEL_ONE, LABIAL_HEAR_LEVEL_NONE);
+    level->before = Frama_C_interval(LABIAL_HEAR_LEVEL_ONE, LABIAL_HEAR_LEVEL_NONE);
+    level->stage = (uint8_t)Frama_C_interval(0, 2);
+}
+
+int prove_hear_features(void)
+{
+    static labial_hear_features_t heard;
+    static int16_t window[LABIAL_HEAR_WINDOW_], features[LABIAL_HEAR_BANDS];
+    labial_hear_level_t level;
+    any_level(&level);
+    FILL(window);
+    labial_hear_features(window, any_int, &level, features);
+    labial_hear_features_reset(&heard);
+    FILL(heard.window);
+    FILL(heard.tail);
+    heard.hop = (uint8_t)Frama_C_interval(0, 1);
+    any_level(&heard.level);
+    labial_hear_features_last(&heard);
+    labial_hear_features_take(&heard, any_int16); /* the first one */
+    heard.filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
+    labial_hear_features_begun(&heard);
+    labial_hear_features_last(&heard);
+    labial_hear_features_take(&heard, any_int16);
+    return 0;
+}
+
+/* ---- The network ------------------------------------------------------------------------------------------------- */
+
+/* Networks of the sizes of hear_small and of hear_large, with any weights, biases and shifts, after any number of
+ * frames: any features, any memory. All tables are as long as these sizes ask for, and the workspace ends with the
+ * last row. Scores and poses of any number of classes. */
 
 #define UNITS 76
 #define ROWS 27
@@ -101,7 +181,7 @@ static void pose(void)
     labial_hear_pose(&model, heads, Frama_C_interval(0, 512), found);
 }
 
-int main(void)
+int prove_hear_network(void)
 {
     unsigned i;
     FILL(weights);

@@ -35,7 +35,7 @@ from labial.corpus.episode import Segment
 from labial.evaluate.loss import measure
 from labial.evaluate.material import Options
 from labial.evaluate.protocol import evaluate
-from labial.see import drawing
+from labial.see import plot
 from labial.tables.model import save
 from labial.tables.phones import drawn_streams
 from labial.tables.quantise import quantise
@@ -81,15 +81,15 @@ def _measured(*_: Any) -> Any:
 
 
 def _evaluate() -> None:
-    from labial.evaluate import plots
+    from labial.evaluate import report
 
     def blank(_: Any, __: Any, folder: Path) -> List[str]:
         for name in PICTURES:
-            drawing.write(pyplot.figure(figsize=(1, 1)), folder / name)
+            plot.write(pyplot.figure(figsize=(1, 1)), folder / name)
         return PICTURES
 
     labial.evaluate.protocol.run_split = lambda _, split, __: _outcomes()[split.number]  # type: ignore[assignment]
-    plots.write = blank
+    report.draw = blank
 
 
 @functools.cache
@@ -163,10 +163,10 @@ def _evaluate_hear() -> None:
 
 
 def _speech_corpus() -> None:
-    from labial.hearing import speech_corpus, voices
+    from labial.hearing import voices
 
     said = voices.Spoken(np.arange(8000, dtype=np.int16), 16000, (Segment(0.0, 0.5, "SIL"),))
-    speech_corpus.speak = lambda *_: iter([said])  # type: ignore[assignment]
+    voices.speak = lambda *_: iter([said])  # type: ignore[assignment]
 
 
 def cases() -> Dict[str, Case]:

@@ -22,13 +22,13 @@ from labial.__main__ import main  # noqa: E402
 from labial.corpus.episode import Segment  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
 from labial.sound import align as module  # noqa: E402
+from labial.sound.align import phrases_of, pronunciations, spelt  # noqa: E402
 from labial.sound.recogniser import (  # noqa: E402
     LONGEST_CLOSURE,
     Recogniser,  # noqa: E402
     with_silences,
 )
 from labial.sound.samples import RATE, prepared, read_sound, silences  # noqa: E402
-from labial.sound.words import phrases_of, pronunciations, spelt  # noqa: E402
 from test_speak import speak  # noqa: E402
 
 #: What is spoken here; the first in sounds that show on lips, the second with stops behind pauses and between vowels.

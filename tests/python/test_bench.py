@@ -16,7 +16,7 @@ import pytest
 
 import closures
 import heads
-from labial.fit.sentences import Motion
+from labial.fit.solve import Motion
 from labial.tables.model import load
 from measure import baseline, figures, pages, records, sizes, table
 from measure.core import Bench, Figure
@@ -238,7 +238,7 @@ def test_motions_are_joined() -> None:
 def test_rows_of_a_head() -> None:
     """ICT's head with the built-in rig, to what docs/avatar.md says."""
     from labial.fit.head import read_table
-    from labial.fit.sentences import read_sentences
+    from labial.fit.solve import read_sentences
 
     head, motion = read_table(TESTS / "heads" / "ict_lips.csv"), read_sentences(TESTS / "sentences.flite")
     assert heads.built_in(head, "oculus", motion) == {}

@@ -241,7 +241,7 @@ class Player:
 
 
 def test_what_boards_show() -> None:
-    """Catches a number in tests/device/beside_works.c that the library itself made."""
+    """Catches a number in tests/device/motion_works.c that the library itself made."""
     seed, shown, session = 1, bytearray(), 0
 
     def draw(below: int) -> int:
@@ -271,7 +271,7 @@ def test_what_boards_show() -> None:
             elif draw(20) > 0:
                 sample += rate // 50 + draw(64) - 32
                 frame += 1
-    device = (SOURCE / "tests" / "device" / "beside_works.c").read_text(encoding="utf-8")
+    device = (SOURCE / "tests" / "device" / "motion_works.c").read_text(encoding="utf-8")
     assert f"#define SHOWN {zlib.crc32(shown):#010x}u\n" in device
     assert len(set(shown[1::5])) > 1
 

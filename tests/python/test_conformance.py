@@ -9,7 +9,7 @@ from typing import Dict, List, Tuple
 import numpy as np
 import pytest
 
-import motion
+import regenerate
 from labial.errors import LabialError
 from labial.evaluate.check import device_frames
 from labial.reference import contact
@@ -103,7 +103,7 @@ def test_streams_reach_the_edge_cases(
     assert {1, 2, 3} <= stops["short_stops"] and {contact.LONG - 1, contact.LONG, 20} <= stops["long_stop"]
     graded = {number for number, label in enumerate(models["laughter"].phonemes) if label.endswith(("_soft", "_loud"))}
     assert graded and graded <= {push.phoneme for push in pushes("graded")}
-    lengths = {sum(run.counts) for part in by_name["quick_switches"].parts for run in motion.runs(part.pushes, 50)}
+    lengths = {sum(run.counts) for part in by_name["quick_switches"].parts for run in regenerate.runs(part.pushes, 50)}
     assert {1, FADE - 1, FADE, FADE + 1} <= lengths
     assert max(push.milliseconds for push in pushes("saturated")) > 65535
     assert any(part.cancel and part.cancel[0] == 0 for part in by_name["cancelled"].parts)
@@ -131,8 +131,8 @@ def test_a_second_cancel_starts_from_the_pose_reached(
     assert shown[21].any() and not shown[22].any()  # three, then five more
 
 
-def runs_of(*pushes: Tuple[str, int, int]) -> List[motion.Run]:
-    return motion.runs([Push(*push) for push in pushes], 50)
+def runs_of(*pushes: Tuple[str, int, int]) -> List[regenerate.Run]:
+    return regenerate.runs([Push(*push) for push in pushes], 50)
 
 
 def test_runs_are_those_of_frames() -> None:
@@ -146,11 +146,11 @@ def test_runs_are_those_of_frames() -> None:
 def test_a_fade_moves_on_and_arrives() -> None:
     """By its formula, frame by frame: base + (fresh - base) (3 s^2 - 2 s^3), s = j / 9, base = held + v - v / 2^j."""
     fresh = np.full((8, 13), 90.0)
-    found = motion.faded(np.zeros(13), np.full(13, 16.0), fresh)
+    found = regenerate.faded(np.zeros(13), np.full(13, 16.0), fresh)
     for j in range(1, 9):
         base, s = 16.0 - 16.0 / 2**j, j / 9.0
         assert np.allclose(found[j - 1], base + (90.0 - base) * (3 * s * s - 2 * s**3))
-    assert np.allclose(motion.faded(np.zeros(13), np.zeros(13), fresh[:3]), found[:3] - np.array(
+    assert np.allclose(regenerate.faded(np.zeros(13), np.zeros(13), fresh[:3]), found[:3] - np.array(
         [[(16.0 - 16.0 / 2**j) * (1 - 3 * (j / 9) ** 2 + 2 * (j / 9) ** 3)] * 13 for j in (1, 2, 3)]))
 
 
@@ -158,10 +158,10 @@ def test_one_run_is_the_reference(models: Dict[str, ExportedModel]) -> None:
     """A part of one model is what the reference makes of it, and a later run its motion on other turns."""
     tables = {word: ExportedTables(model) for word, model in models.items()}
     pushes = tuple(Push("speech", number, 75) for number in (0, 5, 9, 20, 0))
-    alone = motion.part_motion(tables, Part(pushes, None), np.zeros(13))
+    alone = regenerate.part_motion(tables, Part(pushes, None), np.zeros(13))
     whole = synthesise(tables["speech"], [(push.phoneme, push.milliseconds) for push in pushes])
     assert (alone == delivered(whole, exact=True)).all()
-    behind = motion.part_motion(tables, Part((Push("laughter", 1, 20), *pushes), None), np.zeros(13))
+    behind = regenerate.part_motion(tables, Part((Push("laughter", 1, 20), *pushes), None), np.zeros(13))
     assert len(behind) == len(alone) + 1 and 0 < np.abs(behind[9:] - alone[8:]).max() < 60
 
 

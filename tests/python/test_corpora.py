@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from labial.corpus import read_corpus
-from labial.corpus.avlaughter import read_avlaughter
+from labial.corpus.corpora import read_avlaughter
 from labial.corpus.folder import HEADER, read_frames
 from labial.corpus.iemocap import align_head, read_iemocap
 from labial.errors import DataError, LabialError

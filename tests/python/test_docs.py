@@ -112,6 +112,7 @@ NOT_RUN: Dict[str, Dict[str, str]] = {
         "labial landmarks recordings/s01.mp4 -o recordings/s01.npz": "needs MediaPipe; tests/tracking runs it",
         "labial align recordings/s01.mp4 --text-file recordings/s01.txt -o recordings/s01.lab": "likewise",
         "labial evaluate corpus/ --splits 5 -o report/": "takes too long; test_evaluate.py runs it on less",
+        'labial train "$LABIAL/export/corpora/addresses" -o addresses.npz': "README.md trains it",
         'cd "$LABIAL/export/corpora" && labial train grid_s1 addresses grid_singles grid_more --talker-variance 1 '
         "-o ~/shared.npz": "takes a minute; test_talkers.py trains on less",
         "labial train corpus/ --adapt ~/shared.npz -o mine.npz": "needs the model above; test_talkers.py adapts",
@@ -166,13 +167,14 @@ def test_every_row_of_a_table_has_the_cells_of_its_header(page: Path) -> None:
 
 def prepare(page: Path, folder: Path) -> None:
     """Makes what a page's reader has before its first command, or makes with commands that are not run: for README.md
-    the source tree, for record.md recordings, for arduino.md the folder into which `labial` was installed."""
+    the source tree, for record.md recordings and a model, for arduino.md the folder that `labial` was installed in."""
     if page.name == "README.md":
         copy_sources(folder)
         return
     folder.mkdir()
     if page.name == "record.md":
         write_recordings(folder)
+        shutil.copyfile(SOURCE / "export" / "models" / "speech_en.npz", folder / "addresses.npz")
     if page.name == "arduino.md":
         (folder / "tools" / "bin").mkdir(parents=True)
         (folder / "tools" / "bin" / "labial").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m labial "$@"\n')

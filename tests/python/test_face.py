@@ -18,7 +18,7 @@ import labial
 from labial.__main__ import main
 from labial.commands.common import Limited
 from labial.errors import LabialError
-from labial.fit.sentences import read_sentences
+from labial.fit.solve import read_sentences
 from labial.rig.animation import FORMATS
 from labial.rig.description import read
 from labial.runtime.rig import Rig
@@ -259,7 +259,7 @@ AHEAD, SIGHT = 6, 32
 
 
 class Servo(NamedTuple):
-    """An output of tests/device/face_works.c; weights in 1/4096, the gain in 1/65536."""
+    """An output of tests/device/motion_works.c; weights in 1/4096, the gain in 1/65536."""
 
     weights: Dict[int, int]
     invert: bool
@@ -332,7 +332,7 @@ SERVOS = (Servo({3: -4096, 4: -4096}, False, 5600, 2000 * 65536 // 600, 5600, 56
 
 
 def test_what_boards_move() -> None:
-    """Catches a number in tests/device/face_works.c that the library itself made."""
+    """Catches a number in tests/device/motion_works.c that the library itself made."""
     seed, moved, now = 1, bytearray(), 0
     due = shown_at = None
     waiting: List[List[int]] = []
@@ -388,6 +388,6 @@ def test_what_boards_move() -> None:
             ticks += 1
             moved += bytes([result, *(byte for value in values for byte in (value & 255, value >> 8)),
                             min(1 + ticks // 10, 3)])
-    device = (SOURCE / "tests" / "device" / "face_works.c").read_text(encoding="utf-8")
+    device = (SOURCE / "tests" / "device" / "motion_works.c").read_text(encoding="utf-8")
     assert f"#define MOVED {zlib.crc32(moved):#010x}u\n" in device
     assert {0, 1, 2, 3} == set(moved[::8])

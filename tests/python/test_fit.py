@@ -24,7 +24,7 @@ from labial.fit.head import Head, read_table
 from labial.fit.kinds import kind_of, known, shapes_for
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
-from labial.fit.sentences import Motion, read_sentences
+from labial.fit.solve import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
 from packages import needs_runtime

@@ -14,11 +14,10 @@ from avatars import document_of, glb, made_head
 from labial.__main__ import main
 from labial.fit.avatar import Mesh
 from labial.fit.fit import describe, fit, output_name, output_names
-from labial.fit.head import Head
+from labial.fit.head import Head, of_head, plain
 from labial.fit.kinds import known, shapes_for, unknown
 from labial.fit.landmarks import read_head
 from labial.fit.meaning import Figures
-from labial.fit.names import of_head, plain
 from labial.fit.solve import FEATURES, Group, Solution, groups_of
 from labial.rig.animation import face, outputs
 from labial.rig.description import read

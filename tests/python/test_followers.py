@@ -37,9 +37,8 @@ from labial.tables.followers import (
 from labial.tables.layout import blob, sources, table_bytes
 from labial.tables.model import Model, load, save
 from labial.tables.quantise import quantise
-from labial.train import protrusion
-from labial.train.expression import AMPLITUDE
-from labial.train.protrusion import table, with_protrusion
+from labial.train import expression
+from labial.train.expression import AMPLITUDE, table, with_protrusion
 from labial.train.recordings import Recording
 from labial.train.workers import Workers
 from models import random_model, streams
@@ -225,7 +224,7 @@ def test_model_protrudes_as_far_as_wanted(monkeypatch: pytest.MonkeyPatch, worke
     teaches nothing, and where the corners do not tell it, it stays a channel."""
     rng = np.random.default_rng(6)
     model, material = random_model(1), [recording(rng, 3.0) for _ in range(3)]
-    monkeypatch.setattr(protrusion, "motion_of", lambda task: 0.5 * task[1].frames)
+    monkeypatch.setattr(expression, "motion_of", lambda task: 0.5 * task[1].frames)
     found = with_protrusion(model, material, workers)
     made = interpolated(0.5 * np.concatenate([item.frames for item in material])[:, CORNERS], found.protrusion_range,
                         found.protrusion)

@@ -340,7 +340,7 @@ def test_what_is_delivered_rests_and_loses_nothing_of_the_sound() -> None:
 
 
 def test_tables_and_fixtures_are_written(tmp_path: Path) -> None:
-    """Catches tables that changed in Python alone: run python -m labial.hearing.emit lib, and tests/c/hears.py."""
+    """Catches tables and laughs that changed in Python alone: run python -m labial.hearing.emit lib, or hears.py."""
     emit.write_tables(tmp_path)
     for path in tmp_path.iterdir():
         assert path.read_bytes() == (SOURCE / "lib" / path.name).read_bytes(), path.name

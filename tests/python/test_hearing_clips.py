@@ -17,7 +17,7 @@ import soundfile
 from labial.__main__ import main
 from labial.corpus.episode import Segment
 from labial.errors import DataError, LabialError
-from labial.evaluate import hearing, loudness
+from labial.evaluate import hearing
 from labial.files.faps import CHANNELS, FAP_NUMBERS, TOUCHING
 from labial.files.frames import opening
 from labial.hearing import clips, distort, measures, prepared, targets
@@ -86,7 +86,7 @@ class Found:
     """What alignment is taken for in the tests below."""
 
     def __init__(self, confidence: float) -> None:
-        from labial.sound.confidence import Stretch
+        from labial.sound.recogniser import Stretch
 
         self.stretches = [Stretch(0.0, 0.3, confidence), Stretch(0.3, 0.4, 1.0)]
 
@@ -473,11 +473,11 @@ def test_loudness_opens_the_mouth() -> None:
     hum = (hum * np.sin(2 * np.pi * 150 * np.arange(RATE) / RATE)).astype(np.float32)
     sound = distort.as_integers(np.concatenate([np.zeros(RATE), hum, hiss]), -3.0)
     gap, less = (opening(method(sound))
-                 for method in (loudness.loudness, loudness.loudness_and_crossings))
+                 for method in (hearing.loudness, hearing.loudness_and_crossings))
     assert len(gap) == len(sound) // FRAME and gap[:45].max() <= 72 < gap[60:].min()
     assert np.allclose(gap[55:95], less[55:95]) and less[110:].max() < 0.6 * gap[110:].min()
-    assert loudness.crossings(sound)[60:90].mean() == pytest.approx(300, abs=60)
-    assert loudness.loudness(np.zeros(0, np.int16)).shape == (0, CHANNELS)
+    assert hearing.crossings(sound)[60:90].mean() == pytest.approx(300, abs=60)
+    assert hearing.loudness(np.zeros(0, np.int16)).shape == (0, CHANNELS)
 
 
 @needs_runtime

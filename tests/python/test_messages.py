@@ -19,9 +19,9 @@ from typing import Any, Callable, Dict, List, Sequence, Tuple
 import pytest
 
 import labial
+from labial.corpus.formats import read_service
 from labial.corpus.messages import Messages, Stats
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.service_files import read
 from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
@@ -347,7 +347,7 @@ def test_readers_are_linear(name: str, tmp_path: Path) -> None:
 
     def read_file(count: int) -> None:
         path.write_text(json.dumps(sample.messages * count), encoding="utf-8")
-        read(path, sample.service)
+        read_service(path, sample.service)
 
     _assert_linear(read_file)
 

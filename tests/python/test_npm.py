@@ -19,7 +19,7 @@ import pytest
 
 import labial
 from labial.__main__ import main
-from labial.corpus import service_files
+from labial.corpus import formats
 from labial.corpus.phonesets import ARPABET, AUTO
 from labial.errors import DataError
 from labial.files.faps import CHANNELS, FAP_NAMES
@@ -202,7 +202,7 @@ def read_by_python(folder: Path, reader: str, text: str) -> Any:
     path = folder / "a"
     path.write_bytes(text.encode("utf-8"))
     try:
-        return [(item.start, item.end, item.label, item.labels) for item in service_files.read(path, READERS[reader])]
+        return [(item.start, item.end, item.label, item.labels) for item in formats.read_service(path, READERS[reader])]
     except DataError as error:
         return str(error)
 

@@ -303,7 +303,7 @@ def test_without_matplotlib_the_way_out_is_named(
 ) -> None:
     """The tables need no drawing."""
     real = builtins.__import__
-    monkeypatch.delitem(sys.modules, "labial.see.drawing", raising=False)  # which other tests may have imported
+    monkeypatch.delitem(sys.modules, "labial.see.plot", raising=False)  # which other tests may have imported
 
     def refuse(name: str, *rest: object, **named: object) -> object:
         if name.split(".")[0] == "matplotlib":

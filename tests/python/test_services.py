@@ -14,8 +14,7 @@ import pytest
 
 import labial
 from labial.__main__ import main
-from labial.corpus.formats import as_lab, read_timings
-from labial.corpus.service_files import LAST_VISEME, _phonemes_of
+from labial.corpus.formats import LAST_VISEME, _phonemes_of, as_lab, read_timings
 from labial.corpus.services import SERVICES
 from labial.corpus.timings import SourceSegment, read_segments
 from labial.errors import DataError

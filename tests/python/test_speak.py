@@ -27,9 +27,8 @@ from labial.corpus.episode import Segment
 from labial.corpus.languages import speakable
 from labial.errors import DataError, LabialError
 from labial.files.frames import opening
-from labial.hearing import espeak, targets
-from labial.hearing.speech_corpus import Written, read_sentences, write_corpus
-from labial.hearing.voices import Spoken
+from labial.hearing import targets, voices
+from labial.hearing.voices import Spoken, Written, read_sentences, write_corpus
 from labial.hearing.voices import speak as speak_texts
 from packages import CC, SOURCE, needs_runtime
 from packages import run as ran
@@ -283,11 +282,11 @@ def test_a_closure_is_the_silence_before_the_burst() -> None:
     """Worked by hand, steps of 5 ms: silence from 40 to 70 ms belongs to the stop; where the sound does not fall by 24
     dB there is none; at most 100 ms, and 20 ms of the phoneme before, are kept."""
     levels = np.array([1600] * 8 + [100] * 6 + [2000] * 6)
-    assert espeak.closure(levels, 0, 70) == 40
-    assert espeak.closure(np.where(levels == 100, 101, levels), 0, 70) == 70
-    assert espeak.closure(levels, 30, 70) == 50  # 20 ms after 30
+    assert voices.closure(levels, 0, 70) == 40
+    assert voices.closure(np.where(levels == 100, 101, levels), 0, 70) == 70
+    assert voices.closure(levels, 30, 70) == 50  # 20 ms after 30
     long = np.array([1600] * 8 + [0] * 40)
-    assert espeak.closure(long, 0, 240) == 140
+    assert voices.closure(long, 0, 240) == 140
 
 
 def test_phonemes_of_events_that_espeak_reports() -> None:
@@ -295,7 +294,7 @@ def test_phonemes_of_events_that_espeak_reports() -> None:
     the name of a language is no phoneme."""
     samples = np.full(1000, 1000, np.int16)  # 1 s
     events = [(0, "m"), (100, "(en)"), (100, "a"), (150, "ː"), (200, ""), (230, "n"), (300, ""), (420, "o"), (500, "")]
-    found = [(round(end, 3), label) for end, label in espeak.phonemes(events, samples, 1000)]
+    found = [(round(end, 3), label) for end, label in voices.phonemes(events, samples, 1000)]
     assert found == [(0.0, ""), (0.1, "m"), (0.23, "a"), (0.3, "n"), (0.42, ""), (0.5, "o"), (1.0, "")]
 
 
@@ -375,7 +374,7 @@ def test_a_corpus_is_spoken(tmp_path: Path) -> None:
     sentences."""
     sentences = ["A map.", "My papa.", "Blue bees.", "Five."]
     voices = ["flite:kal16", "espeak:en-us"]
-    code = ("import sys; from labial.hearing.speech_corpus import write_corpus\n"
+    code = ("import sys; from labial.hearing.voices import write_corpus\n"
             "print(*write_corpus(sys.argv[1], {}, {}, .15, {}))")
     for name, seed in (("a", 0), ("b", 0), ("c", 1)):
         told = ran(sys.executable, "-c", code.format(sentences, voices, seed), tmp_path / name).split()

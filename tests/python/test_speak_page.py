@@ -15,7 +15,7 @@ import pytest
 
 import labial
 from browser import CHROMIUM, REASON, Browser, Page
-from labial.hearing import espeak
+from labial.hearing import voices
 from npm import NODE, TOOLS_MISSING, answered, install, node, package, tools
 from packages import SOURCE, needs_runtime, run
 from pages import parse
@@ -189,7 +189,7 @@ def test_drawn_events_of_espeak(tmp_path: Path) -> None:
         pieces = [rng.choice([0, 20, 900, 8000]) for _ in range(moment // 15 + 2)]
         samples = np.repeat(np.array(pieces, "int16"), rate * 15 // 1000) * rng.choice([1, -1])
         given.append([events_of(events), [samples[:777].tolist(), samples[777:].tolist()], rate])
-        wanted.append(without_gaps(espeak.phonemes(events, samples, rate)))
+        wanted.append(without_gaps(voices.phonemes(events, samples, rate)))
     moved = 0
     for (events, _, _), (found, _), one in zip(given, answered(ESPEAK, given, tmp_path), wanted):
         segments = [(item["start"], item["end"], item["label"]) for item in found]
@@ -216,7 +216,7 @@ def test_espeak_in_six_languages(tmp_path: Path) -> None:
     """No unknown label, and the times that the exporter takes of the same events."""
     given, wanted = [], []
     for voice, text in SENTENCES.items():
-        speaker = espeak.Speaker(voice)
+        speaker = voices.Speaker(voice)
         samples, rate, ends = speaker.say(text)
         given.append([events_of(speaker._events), [samples.tolist()], rate])
         wanted.append(joined(without_gaps(ends)))
@@ -259,7 +259,7 @@ def test_espeaks_npm_package_in_six_languages(tmp_path: Path) -> None:
         samples = np.concatenate([np.array(piece, "int16") for piece in pieces])
         names = [(event["audio_position"], event["id"].encode("utf-8")[:8].decode("utf-8", "ignore"))
                  for event in events if event["type"] == "phoneme"]
-        wanted = joined(without_gaps(espeak.phonemes(names, samples, rate)))
+        wanted = joined(without_gaps(voices.phonemes(names, samples, rate)))
         segments = joined([(item["start"], item["end"], item["label"]) for item in found])
         assert unknown == [] and len(segments) > 15, voice
         assert [item[2] for item in segments] == [item[2] for item in wanted], voice

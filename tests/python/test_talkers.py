@@ -266,7 +266,7 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     assert main(arguments) == 0
     assert load(model).training["episodes"] == 16
     report = tmp_path / "report"
-    arguments = ["evaluate", str(first), str(second), "-o", str(report), "--quiet", "--methods", "mean,labial",
+    arguments = ["evaluate", str(first), str(second), "-o", str(report), "--quiet", "--methods", "mean",
                  "--jobs", "1"]  # fmt: skip
     assert main([*arguments, "--leave-out-talkers"]) == 0
     text = (report / "report.md").read_text()
@@ -436,7 +436,7 @@ def test_a_model_is_adapted_to_a_talker(shared, tmp_path) -> None:
 @pytest.mark.slow
 def test_an_adapted_model_moves_as_far_as_its_talker(shared, monkeypatch: pytest.MonkeyPatch) -> None:
     # Catches the scale of the talkers who taught the shared model, and one that a second widening multiplies.
-    monkeypatch.setattr("labial.train.adapt.HALF", 0.0)  # or seconds of him would count for little
+    monkeypatch.setattr("labial.train.talkers.HALF", 0.0)  # or seconds of him would count for little
     own = [item for item in two_talkers() if item.source.talker == "y"]
     channels = solved(shared.source)
     for scale in (0.5, 1.5):

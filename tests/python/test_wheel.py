@@ -212,6 +212,7 @@ def build(folder: Path, builder: Path, cache: Path, *platforms: str) -> Dict[str
         for name, value in (("ZIG_GLOBAL_CACHE_DIR", str(cache)), ("SOURCE_DATE_EPOCH", "1700000001"),
                             ("PYTHONDONTWRITEBYTECODE", "1")):
             patch.setenv(name, value)
+        patch.delenv("CMAKE_C_COMPILER_LAUNCHER", raising=False)  # which would remember the first build in the second
         with contextlib.redirect_stdout(io.StringIO()) as said:
             assert wheels.main(["-o", str(folder / "dist"), "--platform", *platforms]) == 0
     return dict(zip(platforms, map(Path, said.getvalue().splitlines())))

@@ -16,8 +16,8 @@ import words as cases
 from labial.__main__ import main
 from labial.corpus.phonesets import ARPABET
 from labial.errors import DataError, ModelError
-from labial.words import alignment, decoder, dictionary, emit, packing, tables, text, times, training
-from labial.words.questions import Asked, answer, features
+from labial.words import alignment, dictionary, packing, tables, text, times, training
+from labial.words.trees import Asked, answer, features
 from packages import CC, SOURCE, needs_runtime
 
 TRAINED = SOURCE / "export" / "models" / "words_en.npz"
@@ -40,7 +40,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
     lines = ["# a comment", ";;; another one"]
     common = dictionary.read_common(dictionary.COMMON)
     for number, word in enumerate([*common[:2500], *(word for word in common[2500:] if "x" in word)]):
-        heard = tables.names(decoder.phonemes(found, word)).split()
+        heard = tables.names(tables.phonemes(found, word)).split()
         sounds = [label + "1" * (label in "AA AE IY OW UW") for label in heard]
         lines.append(f"{word} {' '.join(sounds)} # note")
         if number % 40 == 0:
@@ -100,7 +100,7 @@ def test_words_that_everyone_says_are_read_right(trained: tables.WordTables) -> 
     """Also those in which a letter sounds as in no other word, such as the f of "of"."""
     said = {"of": "AH V", "could've": "K UH D AH V", "women's": "W IH M AH N Z", "recipe": "R EH S AH P IY",
             "laughs": "L AE F S", "genuine": "JH EH N Y AH W AH N", "february": "F EH B Y AH W EH R IY"}  # fmt: skip
-    assert {word: tables.names(decoder.phonemes(trained, word)) for word in said} == said
+    assert {word: tables.names(tables.phonemes(trained, word)) for word in said} == said
 
 
 def test_questions_of_all_letters_at_once_are_those_of_one(trained: tables.WordTables) -> None:
@@ -130,7 +130,7 @@ def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pyt
     found = tables.load(tmp_path / "a.npz")
     assert found.leaves <= 1200 and len(found.exceptions) == 150
     known = dictionary.pronunciations(dictionary.read_dictionary(small))
-    assert all(decoder.phonemes(found, word) in known[word] for word in found.exceptions)
+    assert all(tables.phonemes(found, word) in known[word] for word in found.exceptions)
     assert training.score(found, known)["phonemes"] > 90.0
     (tmp_path / "main.c").write_text('#include "mine.h"\n'
                                      "int main(void) { return mine.format != LABIAL_WORDS_FORMAT; }\n")
@@ -208,7 +208,7 @@ def test_files_that_are_no_tables_are_refused(tmp_path: Path, capsys: pytest.Cap
 def test_bundled_tables_are_those_that_were_trained(tmp_path: Path, trained: tables.WordTables) -> None:
     """Catches tables that were trained anew and not exported, and a packing that changed under them."""
     packed = packing.pack(trained)
-    for path in emit.write(packed, "words_en", tmp_path):
+    for path in packing.write(packed, "words_en", tmp_path):
         assert path.read_bytes() == (SOURCE / "lib/words" / path.name).read_bytes(), "run labial export"
     assert packed.size < 40_000
     assert "Copyright (C) 1993-2015 Carnegie Mellon University" in (tmp_path / "words_en.c").read_text()
@@ -307,7 +307,7 @@ def test_texts_are_read_as_a_voice_reads_them(trained: tables.WordTables) -> Non
     that were read wrongly once, of which none may be."""
     lines = [line.split("\t") for line in SPOKEN.read_text(encoding="utf-8").splitlines() if line and line[0] != "#"]
     wrong = [given for given, said in lines if spoken(trained, given) not in
-             [tables.names([p for word in one.replace("_", " ").split() for p in decoder.phonemes(trained, word)])
+             [tables.names([p for word in one.replace("_", " ").split() for p in tables.phonemes(trained, word)])
               for one in said.split(" | ")]]
     assert len(lines) > 320 and len(wrong) <= len(lines) // 100, wrong
     assert len(cases.REPORTED) > 60 and not set(wrong) & set(cases.REPORTED)
@@ -390,14 +390,14 @@ def test_c_shares_time_as_the_reference_does(trained: tables.WordTables) -> None
 
     read = {word: text.read(trained, word).phonemes for word in dictionary.read_common(dictionary.COMMON)[:800]}
     given = [word for word, phonemes in read.items() if len(word) > 1 and sum(first for _, _, first in phonemes) == 1
-             and tuple(p for p, _, _ in phonemes) == decoder.phonemes(trained, word)]
+             and tuple(p for p, _, _ in phonemes) == tables.phonemes(trained, word)]
     numbers = random.Random(3)
     stream, moment, got, expected = WordStream(), 0, [], []
     for word in given:
         length = numbers.randint(200, 900)
         stream.push(word, moment, moment + length)
         got += stream.take()
-        heard = decoder.phonemes(trained, word)
+        heard = tables.phonemes(trained, word)
         ends = times.ends(times.weights(heard, word == given[-1]), length)
         expected += [(dictionary.PHONEMES[p], end - start) for p, start, end in zip(heard, [0, *ends], ends)]
         moment += length
@@ -425,4 +425,4 @@ def test_a_changed_exception_is_seen(trained: tables.WordTables) -> None:
     word = next(iter(trained.exceptions))
     other = replace(trained, exceptions={**trained.exceptions, word: ((0, 0),)})
     assert packing.pack(other).patches != packing.pack(trained).patches
-    assert decoder.phonemes(other, word) != decoder.phonemes(trained, word)
+    assert tables.phonemes(other, word) != tables.phonemes(trained, word)

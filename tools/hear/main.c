@@ -8,15 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "choice.h"
+#include "common.h"
 #include "frames.h"
 #include "hearing.h"
 #include "labial/hear.h"
 #include "wav.h"
 
-/* Exit statuses. */
+/* The exit status for what is wrong with the input. */
 #define EXIT_INPUT 1
-#define EXIT_USAGE 2
 
 #define DEFAULT_RATE 16000
 #define RATE_MAX 1000000
@@ -95,25 +94,10 @@ static unsigned default_model(void)
     return number;
 }
 
-static int wrong_usage(const char *problem, const char *value)
-{
-    fprintf(stderr, "labial-hear: %s '%s'; see labial-hear --help\n", problem, value);
-    return EXIT_USAGE;
-}
-
-static int read_choice(const char *option, const char *value, choice_names_t names, unsigned *chosen)
-{
-    const int number = choice_of("labial-hear", option, value, names);
-    if (number < 0)
-        return EXIT_USAGE;
-    *chosen = (unsigned)number;
-    return 0;
-}
-
 static int read_number(const char *problem, const char *value, unsigned most, unsigned *number)
 {
     if (option_number(value, most, number) != 0 || *number == 0)
-        return wrong_usage(problem, value);
+        return options_wrong("labial-hear", problem, value);
     return 0;
 }
 
@@ -123,10 +107,10 @@ static int read_options(int argc, char **argv, options_t *options)
         const char *value;
         int result = 0;
         if ((value = option_value("--to", argc, argv, &i)) != NULL) {
-            result = read_choice("--to", value, frames_format_name, &options->to);
+            result = choose("labial-hear", "--to", value, frames_format_name, &options->to);
             options->to_given = 1;
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
-            result = read_choice("--model", value, model_name, &options->model);
+            result = choose("labial-hear", "--model", value, model_name, &options->model);
         } else if ((value = option_value("--rate", argc, argv, &i)) != NULL) {
             result =
                 read_number("--rate is a whole number of samples per second, not", value, RATE_MAX, &options->rate);
@@ -137,9 +121,9 @@ static int read_options(int argc, char **argv, options_t *options)
         } else if (strcmp(argv[i], "--exact") == 0) {
             options->exact = 1;
         } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
-            result = wrong_usage("unknown option", argv[i]);
+            result = options_wrong("labial-hear", "unknown option", argv[i]);
         } else if (options->sound) {
-            result = wrong_usage("one argument too many:", argv[i]);
+            result = options_wrong("labial-hear", "one argument too many:", argv[i]);
         } else {
             options->sound = argv[i];
         }
@@ -147,11 +131,11 @@ static int read_options(int argc, char **argv, options_t *options)
             return result;
     }
     if (!options->sound)
-        return wrong_usage("the sound is missing: a WAV file or", "-");
+        return options_wrong("labial-hear", "the sound is missing: a WAV file or", "-");
     if ((options->rate || options->channels) && strcmp(options->sound, "-") != 0)
-        return wrong_usage("--rate and --channels go with -, not with", options->sound);
+        return options_wrong("labial-hear", "--rate and --channels go with -, not with", options->sound);
     if (options->classes && options->to_given)
-        return wrong_usage("--to selects a format of motion and does not go with", "--classes");
+        return options_wrong("labial-hear", "--to selects a format of motion and does not go with", "--classes");
     return 0;
 }
 
@@ -356,14 +340,8 @@ static int open_and_run(hear_t *hear, const options_t *options)
 
 int main(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-        print_usage();
+    if (options_ask("labial-hear", argc, argv, print_usage))
         return 0;
-    }
-    if (argc == 2 && strcmp(argv[1], "--version") == 0) {
-        printf("labial-hear %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
-        return 0;
-    }
     options_t options = { NULL, 0, default_model(), 0, 0, 0, 0, 0 };
     const int result = read_options(argc, argv, &options);
     if (result != 0)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "arkit.h"
-#include "grow.h"
+#include "common.h"
 
 /* FAPs of MPEG-4, each with an entry in the mask of a fap file. */
 #define FAP_COUNT 68

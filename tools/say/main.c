@@ -6,13 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "choice.h"
+#include "common.h"
 #include "mouth.h"
 #include "timings.h"
 
-/* Exit statuses. */
+/* The exit status for what is wrong with the input. */
 #define EXIT_INPUT 1
-#define EXIT_USAGE 2
 
 /* Numbers are places in the lists of what there is. */
 typedef struct {
@@ -57,12 +56,6 @@ static const char usage_end[] =
 
 /* ---- Options --------------------------------------------------------------------------------------------------- */
 
-static int wrong_usage(const char *problem, const char *value)
-{
-    fprintf(stderr, "labial-say: %s '%s'; see labial-say --help\n", problem, value);
-    return EXIT_USAGE;
-}
-
 static const struct {
     const char *name;
     labial_labels_t labels;
@@ -78,19 +71,10 @@ static const char *label_set_name(unsigned number)
     return number < sizeof label_sets / sizeof label_sets[0] ? label_sets[number].name : NULL;
 }
 
-static int read_choice(const char *option, const char *value, choice_names_t names, unsigned *chosen)
-{
-    const int number = choice_of("labial-say", option, value, names);
-    if (number < 0)
-        return EXIT_USAGE;
-    *chosen = (unsigned)number;
-    return 0;
-}
-
 static int read_percent(const char *value, unsigned *percent)
 {
     if (option_number(value, LABIAL_ARTICULATION_MAX, percent) != 0)
-        return wrong_usage("--articulation is a whole number from 0 to 200, not", value);
+        return options_wrong("labial-say", "--articulation is a whole number from 0 to 200, not", value);
     return 0;
 }
 
@@ -100,23 +84,23 @@ static int read_options(int argc, char **argv, options_t *options)
         const char *value;
         int result = 0;
         if ((value = option_value("--from", argc, argv, &i)) != NULL) {
-            result = read_choice("--from", value, labial_timings_format_name, &options->from);
+            result = choose("labial-say", "--from", value, labial_timings_format_name, &options->from);
         } else if ((value = option_value("--to", argc, argv, &i)) != NULL) {
-            result = read_choice("--to", value, frames_format_name, &options->to);
+            result = choose("labial-say", "--to", value, frames_format_name, &options->to);
         } else if ((value = option_value("--tier", argc, argv, &i)) != NULL) {
             options->tier = value;
             if (*value == '\0')
-                result = wrong_usage("--tier is the name of a tier, not", value);
+                result = options_wrong("labial-say", "--tier is the name of a tier, not", value);
         } else if ((value = option_value("--labels", argc, argv, &i)) != NULL) {
-            result = read_choice("--labels", value, label_set_name, &options->labels);
+            result = choose("labial-say", "--labels", value, label_set_name, &options->labels);
         } else if ((value = option_value("--articulation", argc, argv, &i)) != NULL) {
             result = read_percent(value, &options->articulation);
         } else if (strcmp(argv[i], "--exact") == 0) {
             options->exact = 1;
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
-            result = read_choice("--model", value, mouth_voice_name, &options->model);
+            result = choose("labial-say", "--model", value, mouth_voice_name, &options->model);
         } else {
-            result = wrong_usage("unknown argument", argv[i]);
+            result = options_wrong("labial-say", "unknown argument", argv[i]);
         }
         if (result != 0)
             return result;
@@ -188,14 +172,8 @@ static int run(say_t *say, const options_t *options)
 
 int main(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-        print_usage();
+    if (options_ask("labial-say", argc, argv, print_usage))
         return 0;
-    }
-    if (argc == 2 && strcmp(argv[1], "--version") == 0) {
-        printf("labial-say %d.%d.%d\n", LABIAL_VERSION_MAJOR, LABIAL_VERSION_MINOR, LABIAL_VERSION_PATCH);
-        return 0;
-    }
     options_t options = { 0, 0, 0, 0, 100, 0, NULL };
     const int result = read_options(argc, argv, &options);
     if (result != 0)

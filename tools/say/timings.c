@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "grow.h"
+#include "common.h"
 #include "labial/labial.h"
 
 /* What the first two bytes told. */

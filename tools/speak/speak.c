@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "choice.h"
+#include "common.h"
 
 /* Bytes of a WAV header without extensions, and the most bytes of sound that its size fields can hold. */
 #define HEADER_BYTES 44u
@@ -31,12 +31,6 @@ static char *read_text(FILE *in)
     return text;
 }
 
-static int wrong(const char *program, const char *problem, const char *value)
-{
-    fprintf(stderr, "%s: %s '%s'; see %s --help\n", program, problem, value, program);
-    return 2 + 1;
-}
-
 int speak_options(int argc, char **argv, const char *program, const char *usage, speak_options_t *options)
 {
     const char *text = NULL;
@@ -49,26 +43,26 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
             return 0 + 1;
         }
         if (strcmp(argv[i], "--to") == 0) {
-            const int format = choice_of(program, "--to", value, frames_format_name);
-            if (format < 0)
-                return 2 + 1;
-            options->to = (unsigned)format;
+            if (choose(program, "--to", value, frames_format_name, &options->to) != 0)
+                return OPTIONS_WRONG + 1;
             i++;
         } else if (strcmp(argv[i], "--voice") == 0) {
             options->voice = value;
             i++;
         } else if (argv[i][0] == '-' && argv[i][1] != '\0') {
-            return wrong(program, "unknown option", argv[i]);
+            return options_wrong(program, "unknown option", argv[i]) + 1;
         } else if (!options->sound) {
             options->sound = argv[i];
         } else if (!text) {
             text = argv[i];
         } else {
-            return wrong(program, "one argument too many:", argv[i]);
+            return options_wrong(program, "one argument too many:", argv[i]) + 1;
         }
     }
     if (!text)
-        return wrong(program, "the sound file and the text are needed, not only", options->sound ? options->sound : "");
+        return options_wrong(program, "the sound file and the text are needed, not only",
+                             options->sound ? options->sound : "") +
+               1;
     if (strcmp(text, "-") == 0)
         options->text = read_text(stdin);
     else if ((options->text = malloc(strlen(text) + 1)) != NULL)

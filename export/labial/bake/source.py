@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 import math
-import os
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, NamedTuple, Optional, Tuple, Union
+from typing import List, NamedTuple, Optional, Tuple
 
 import numpy as np
 
 from labial.corpus.formats import SOUNDS, read_timings
 from labial.corpus.phonesets import AUTO
 from labial.corpus.timings import SourceSegment, phone_set_of, phoneme_segments
-from labial.errors import DataError, LabialError, needs
+from labial.errors import DataError, LabialError, PathLike, needs
 from labial.files.frames import even, spans
 from labial.see.motion import read_motion
 from labial.tables.bundled import BY_KIND
 from labial.tables.model import Model, load
 from labial.tables.phones import Stream, phone_set, stream_of
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Suffixes, in small letters, of frames; other files are sounds or timings.
 FRAMES = (".csv", ".fap")

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field, replace
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from labial.capture.landmarks import INDEX, Landmarks
 from labial.defaults import WHICH_FACE
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.frames import spans_told
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: A face that is lost for longer, in seconds, starts a new track, which is joined to the old one if both are in one
 #: place.

@@ -14,21 +14,18 @@ x grows to the right of the image, y down, z away from the camera in the unit of
 
 from __future__ import annotations
 
-import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple, Union
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
 from labial.corpus.timings import LONGEST
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.grammar import columns_of, number_or_nan, read_bytes, read_lines, table_rows
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Landmarks that follow the skull: the corners of both eyes, the bridge of the nose, the forehead.
 HEAD = (33, 133, 362, 263, 168, 6, 197, 195, 151, 10)

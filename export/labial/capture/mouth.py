@@ -21,7 +21,7 @@ import numpy as np
 
 from labial.capture.landmarks import HEAD, INDEX, USED, Landmarks
 from labial.corpus.episode import Segment
-from labial.corpus.pose import align_head
+from labial.corpus.iemocap import align_head
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.frames import spans

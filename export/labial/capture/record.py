@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple, Union
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -20,13 +19,11 @@ from labial.corpus.folder import check_span
 from labial.corpus.formats import SOUNDS, VIDEOS, read_timings, suffixes
 from labial.corpus.phonesets import PhoneSet
 from labial.corpus.timings import phoneme_segments
-from labial.errors import DataError, LabialError, SilentError, needs
+from labial.errors import DataError, LabialError, PathLike, SilentError, needs
 from labial.files.faps import FAP_NUMBERS
 from labial.files.frames import even, write_csv
 from labial.files.outputs import check_folder
 from labial.files.outputs import folder as whole_folder
-
-PathLike = Union[str, os.PathLike[str]]
 
 _LANDMARKS = (".npz", ".npy", ".csv")
 #: Slower recordings lose closures: half of GRID's /b/ last 70 ms or less, and the lips touch for a part of that.
@@ -34,9 +31,8 @@ _SLOW = 24.0
 _MOST_OFFSET = 5.0  # seconds
 
 
-def record(
-    sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float, offset: float = 0.0
-) -> str:
+def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float,
+           offset: float = 0.0) -> str:
     """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
 
     The picture is assumed to be `offset` seconds later than its sound; the summary of speech reports the remaining

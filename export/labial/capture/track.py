@@ -8,30 +8,26 @@ from __future__ import annotations
 
 import os
 from contextlib import closing
-from typing import Any, Dict, Iterable, List, Optional, Tuple, Union
+from typing import Any, Dict, Iterable, List, Optional, Tuple
 
 import mediapipe
 import numpy as np
 from tqdm import tqdm
 
 from labial.capture.faces import talker
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files.frames import spans_told
 from labial.files.outputs import writing
 from labial.sound.video import length, pictures
 
-PathLike = Union[str, os.PathLike[str]]
 #: Landmarks (478, 3) in pixels and mouthPucker score, NaN where it is not known, of each face of a picture.
 Faces = List[Tuple[np.ndarray, float]]
-
 #: Faces that are looked for in a picture.
 MOST_FACES = 4
 
 
-def landmarks(
-    video: PathLike, output: PathLike, face: Optional[str] = None, task: Optional[PathLike] = None,
-    progress: bool = False,
-) -> str:
+def landmarks(video: PathLike, output: PathLike, face: Optional[str] = None, task: Optional[PathLike] = None,
+              progress: bool = False) -> str:
     """Writes the landmarks of a video's talker as the .npz that ``labial record`` takes; returns a summary.
 
     `face` says which face, one of `labial.defaults.WHICH_FACE`, where there is more than one; `task` is the model file

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
+from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Dict, List, Optional, Tuple
+from typing import TYPE_CHECKING, Any, ContextManager, Dict, List, Optional, Tuple
 
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
@@ -161,10 +162,12 @@ def shows_progress(options: argparse.Namespace) -> bool:
     return not options.quiet and sys.stderr.isatty()
 
 
+def opened(path: Optional[str], encoding: str = "ascii") -> ContextManager[Any]:
+    """A file to write text to, or standard output without one."""
+    return writing(path, encoding) if path else nullcontext(sys.stdout)
+
+
 def put(text: str, path: Optional[str]) -> None:
     """Writes a text to a file, or to standard output without one."""
-    if path:
-        with writing(path, "utf-8") as out:
-            out.write(text)
-    else:
-        sys.stdout.write(text)
+    with opened(path, "utf-8") as out:
+        out.write(text)

@@ -11,8 +11,6 @@ from labial.defaults import EPISODES, WHICH_FACE
 from labial.errors import needs
 from labial.files.grammar import finite, positive, seed
 
-# ---- timings ---------------------------------------------------------------------------------------------------------
-
 
 def add_timings(command: argparse.ArgumentParser) -> None:
     """Timings and the output file."""
@@ -30,18 +28,13 @@ def run_timings(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     from labial.corpus.formats import as_lab
     from labial.corpus.words import Pronunciation
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    if options.output:
-        check_suffix(options.output, ".lab")
+    check(options.output, ".lab")
     how = Pronunciation(language=options.language)
     offset = options.offset_ms / 1000.0
     put(as_lab(options.phones, options.labels, options.source, how, offset, options.tier), options.output)
     return 0
-
-
-# ---- align -----------------------------------------------------------------------------------------------------------
 
 
 def add_align(command: argparse.ArgumentParser) -> None:
@@ -56,20 +49,15 @@ def run_align(options: argparse.Namespace) -> int:
     """Writes the .lab."""
     with needs("aligning", "align"):
         from labial.sound.align import align_with_bar
-        from labial.sound.confidence import summary
-    from labial.files.outputs import check, check_suffix
+        from labial.sound.recogniser import summary
+    from labial.files.outputs import check
 
-    check(options.output)
-    if options.output:
-        check_suffix(options.output, ".lab")
+    check(options.output, ".lab")
     found = align_with_bar(options.sound, said(options), shows_progress(options))
     put(found.lab(), options.output)
     if found.stretches and not options.quiet:
         print(f"{options.sound}: {summary(found.stretches)}", file=sys.stderr)
     return 0
-
-
-# ---- landmarks -------------------------------------------------------------------------------------------------------
 
 
 def add_landmarks(command: argparse.ArgumentParser) -> None:
@@ -85,18 +73,14 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
 
 def run_landmarks(options: argparse.Namespace) -> int:
     """Writes the landmarks."""
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    check_suffix(options.output, ".npz")
+    check(options.output, ".npz")
     with needs("tracking", "record"):
         from labial.capture.track import landmarks
 
     print(landmarks(options.video, options.output, options.face, options.task, progress=shows_progress(options)))
     return 0
-
-
-# ---- record ----------------------------------------------------------------------------------------------------------
 
 
 def add_record(command: argparse.ArgumentParser) -> None:
@@ -127,9 +111,6 @@ def run_record(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- laughter-corpus -------------------------------------------------------------------------------------------------
-
-
 def add_laughter_corpus(command: argparse.ArgumentParser) -> None:
     """A folder, the number of episodes and the seed."""
     command.add_argument("output", metavar="OUT", help="folder, new or empty")
@@ -144,9 +125,6 @@ def run_laughter_corpus(options: argparse.Namespace) -> int:
     generate(options.output, episodes=options.episodes, seed=options.seed)
     print(f"{options.output}: {options.episodes} synthetic episodes")
     return 0
-
-
-# ---- speech-corpus ---------------------------------------------------------------------------------------------------
 
 
 def add_speech_corpus(command: argparse.ArgumentParser) -> None:
@@ -166,7 +144,7 @@ def run_speech_corpus(options: argparse.Namespace) -> int:
     with needs("speaking", "hear"):
         from tqdm import tqdm
 
-        from labial.hearing.speech_corpus import read_sentences, write_corpus
+        from labial.hearing.voices import read_sentences, write_corpus
     from labial.files.outputs import check_folder
 
     check_folder(options.output)

@@ -67,10 +67,9 @@ def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int,
     """Evaluates and writes the report into the folder `output`; returns what was written. Finished splits are stored
     there until the report is written, and reused."""
     with needs("evaluating", "train,evaluate"):
-        from labial.evaluate import plots, report
-        from labial.evaluate.kept import remove_kept
+        from labial.evaluate import report
         from labial.evaluate.methods import select
-        from labial.evaluate.protocol import evaluate
+        from labial.evaluate.protocol import evaluate, remove_kept
         from labial.train.pipeline import check_jobs
         from labial.train.talkers import check_variance
         from labial.train.workers import Workers
@@ -89,7 +88,7 @@ def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int,
     outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress,
                         folder=Path(output))
     with folder(output) as made:
-        drawn = plots.write(outcomes, options, made)
+        drawn = report.draw(outcomes, options, made)
         written = [path.name for path in report.write(outcomes, options, made, drawn)]
     remove_kept(Path(output))
     if options.leave_out_talkers:

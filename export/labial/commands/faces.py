@@ -10,8 +10,6 @@ from labial import BUNDLED
 from labial.commands.common import add_phones, put
 from labial.errors import LabialError, needs
 
-# ---- rig -------------------------------------------------------------------------------------------------------------
-
 
 def add_rig(command: argparse.ArgumentParser) -> None:
     """The description, and the output files."""
@@ -30,7 +28,6 @@ def run_rig(options: argparse.Namespace) -> int:
     from labial.files.outputs import folder
     from labial.rig import calibrate, table
     from labial.rig.description import read
-    from labial.see import figure
 
     name = options.name or Path(options.description).stem
     check_name(name, "rig")
@@ -44,14 +41,13 @@ def run_rig(options: argparse.Namespace) -> int:
     with folder(options.output) as made:
         paths = table.write(rig, made)
         if not options.no_figure:
+            with needs("drawing (--no-figure leaves it out)", "rig"):
+                from labial.see.plot import draw_rig
             paths.append(made / f"{name}.svg")
-            figure.draw(rig, paths[-1])
+            draw_rig(rig, paths[-1])
     for path in paths:
         print(Path(options.output) / path.name)
     return 0
-
-
-# ---- fit -------------------------------------------------------------------------------------------------------------
 
 
 def add_fit(command: argparse.ArgumentParser) -> None:
@@ -109,9 +105,6 @@ def run_fit(options: argparse.Namespace) -> int:
     return 0
 
 
-# ---- plot ------------------------------------------------------------------------------------------------------------
-
-
 def add_plot(command: argparse.ArgumentParser) -> None:
     """Motions, their phonemes, and the channels to draw."""
     command.add_argument("frames", metavar="FRAMES", nargs="+",
@@ -148,9 +141,6 @@ def _timings(options: argparse.Namespace) -> Tuple[Any, str, Optional[str], Opti
     return options.phones and stored(options.phones), options.labels, options.source, options.tier
 
 
-# ---- page ------------------------------------------------------------------------------------------------------------
-
-
 def add_page(command: argparse.ArgumentParser) -> None:
     """A motion, its phonemes and its sound."""
     command.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz, or "
@@ -168,12 +158,11 @@ def add_page(command: argparse.ArgumentParser) -> None:
 
 def run_page(options: argparse.Namespace) -> int:
     """Writes the page."""
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
-    check(options.output)
-    check_suffix(options.output, ".html", ".htm")
+    check(options.output, ".html", ".htm")
     timings = _timings(options)
     bands, motion = read_bands(*timings), read_motion(options.frames, *timings)
     if options.head is None:

@@ -7,22 +7,12 @@ import functools
 import importlib.util
 import sys
 import warnings
-from contextlib import nullcontext, suppress
+from contextlib import suppress
 from itertools import chain
 from pathlib import Path
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    ContextManager,
-    Iterator,
-    List,
-    NamedTuple,
-    Optional,
-    Sequence,
-    Tuple,
-)
+from typing import TYPE_CHECKING, Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-from labial.commands.common import add_format, add_phones, add_said, format_of, said
+from labial.commands.common import add_format, add_phones, add_said, format_of, opened, said
 from labial.errors import DataError, LabialError, needs
 from labial.files import wav
 from labial.files.grammar import whole
@@ -70,7 +60,7 @@ def run_hear(options: argparse.Namespace) -> int:
     """Writes the frames."""
     import numpy as np
 
-    from labial.files.outputs import check, writing
+    from labial.files.outputs import check
     from labial.runtime.hearing import FPS, Hearing
 
     check(options.output)
@@ -100,8 +90,7 @@ def run_hear(options: argparse.Namespace) -> int:
         if options.to == "fap":  # whose head has the number of frames
             whole_motion = np.concatenate([np.zeros((0, 13)), *parts])
             parts, count = iter([whole_motion]), len(whole_motion)
-        opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
-        with opened as out:
+        with opened(options.output) as out:
             form.write(out, _flushed(parts, out), FPS, Path(options.sound).stem, count)
     return 0
 
@@ -117,7 +106,7 @@ class _Words(NamedTuple):
 def _words(options: argparse.Namespace) -> Optional[_Words]:
     """The phonemes of a file's sound: those that are given, those of its text, or those of the words that are found;
     None for the sound alone."""
-    from labial.runtime.mixing import SHARE
+    from labial.runtime.hearing import SHARE
 
     if options.phones is not None:
         from labial.runtime.render import read_timings
@@ -129,7 +118,7 @@ def _words(options: argparse.Namespace) -> Optional[_Words]:
         return None
     with needs("finding a text in a sound", "align"):
         from labial.sound.align import aligned
-        from labial.sound.confidence import LOW
+        from labial.sound.recogniser import LOW
     if text is not None:
         return _Words(_timings(aligned(options.sound, text).segments), SHARE, [])
     with warnings.catch_warnings():
@@ -148,8 +137,7 @@ def _mixed(words: _Words, heard: np.ndarray, exact: bool) -> np.ndarray:
     import numpy as np
 
     from labial.reference.fade import eased, rests
-    from labial.runtime.hearing import FPS
-    from labial.runtime.mixing import with_sound
+    from labial.runtime.hearing import FPS, with_sound
     from labial.runtime.render import render
 
     count = len(heard)
@@ -173,7 +161,7 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
     """Rate, channels and samples of a file. A WAV file of 16 bits is heard as it is, all else as the reader of ``labial
     align`` converts it."""
     try:
-        with open(path, "rb") as opened, wav.Sound(opened) as file:
+        with open(path, "rb") as content, wav.Sound(content) as file:
             if _is_plain(file):
                 blocks = _in_phase(wav.blocks(file, path), file.getnchannels(), path)
                 return file.getframerate(), file.getnchannels(), b"".join(blocks)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 import functools
 import sys
-from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ContextManager, Tuple
+from typing import TYPE_CHECKING, Tuple
 
 from labial.commands.common import (
     add_format,
@@ -16,6 +15,7 @@ from labial.commands.common import (
     add_said,
     add_source,
     format_of,
+    opened,
     said,
     shows_progress,
 )
@@ -28,8 +28,6 @@ from labial.tables.bundled import MODEL_HELP
 if TYPE_CHECKING:
     from labial.tables.model import Model
     from labial.tables.quantise import ExportedModel
-
-# ---- synth -----------------------------------------------------------------------------------------------------------
 
 
 def add_synth(command: argparse.ArgumentParser) -> None:
@@ -57,7 +55,7 @@ def run_synth(options: argparse.Namespace) -> int:
 
     from labial.files.faps import CHANNELS
     from labial.files.frames import at_rate
-    from labial.files.outputs import check, writing
+    from labial.files.outputs import check
     from labial.reference.synthesis import delivered
     from labial.rig.animation import with_shares
     from labial.tables.model import load
@@ -72,13 +70,9 @@ def run_synth(options: argparse.Namespace) -> int:
         model, phonemes, whole=options.whole, articulation=options.articulation, exact=options.exact)])
     spoken = [(model.phonemes[phoneme], milliseconds) for phoneme, milliseconds in phonemes]
     frames = at_rate(with_shares(motion, spoken, model.fps), model.fps, fps)
-    opened: ContextManager[Any] = writing(options.output, "ascii") if options.output else nullcontext(sys.stdout)
-    with opened as out:
+    with opened(options.output) as out:
         form.write(out, [frames], fps, name, len(frames))
     return 0
-
-
-# ---- export ----------------------------------------------------------------------------------------------------------
 
 
 def add_export(command: argparse.ArgumentParser) -> None:
@@ -156,20 +150,16 @@ def _export_hearing(options: argparse.Namespace) -> int:
 
 def _export_words(options: argparse.Namespace) -> int:
     """Writes tables of words, which `labial train-words` made, and prints their memory."""
-    from labial.words import emit
-    from labial.words.packing import pack
+    from labial.words import packing
     from labial.words.tables import load
 
     if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
         raise LabialError(f"{options.model}: tables of words; --blob, --amplitude and --predecessors are for models")
-    packed = pack(load(options.model))
-    for path in emit.write(packed, options.name, options.output):
+    packed = packing.pack(load(options.model))
+    for path in packing.write(packed, options.name, options.output):
         print(path)
     print(f"{packed.size} bytes: trees {len(packed.trees)}, exceptions {len(packed.patches) + 2 * len(packed.buckets)}")
     return 0
-
-
-# ---- check -----------------------------------------------------------------------------------------------------------
 
 
 def add_check(command: argparse.ArgumentParser) -> None:
@@ -196,9 +186,6 @@ def run_check(options: argparse.Namespace) -> int:
     return 1 if failures else 0
 
 
-# ---- bake ------------------------------------------------------------------------------------------------------------
-
-
 def add_bake(command: argparse.ArgumentParser) -> None:
     """The input, the form of the output, and the face."""
     command.add_argument("file", metavar="FILE", help="phoneme timings, as for synth; a sound, as for align; or frames "
@@ -221,8 +208,8 @@ def add_bake(command: argparse.ArgumentParser) -> None:
 
 def run_bake(options: argparse.Namespace) -> int:
     """Writes the header and, for a track, its player; prints where parts begin and end."""
-    from labial.bake.bake import bake
     from labial.bake.source import Source
+    from labial.bake.track import bake
 
     source = Source(options.file, options.model, said(options), options.labels, options.source,
                     options.tier, shows_progress(options))

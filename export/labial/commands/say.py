@@ -24,7 +24,6 @@ _BEFORE = 100
 #: Voices that are looked for, and their programs.
 _VOICES = {"flite:slt": "flite", "espeak:en-us": "espeak-ng"}
 _SUFFIXES = (".html", ".lab", ".csv", ".fap", ".jsonl")
-
 #: A phoneme, SIL for silence, and its milliseconds.
 Timings = List[Tuple[str, int]]
 

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 LEAST, FEW = 15, 120
 #: The same of what a model is adapted to: what is learnt is less, the less there is.
 LEAST_OF_TALKER, FEW_OF_TALKER = 5, 30
-
 #: Prepared takes of each clip of ``train-hear`` without --takes.
 TAKES = 2
-
 #: The options that ``--adapt`` does not use.
 _OF_TRAINING = ("kind", "method", "fps", "codebook", "components", "look_ahead", "search_stride", "talker_variance",
                 "asymmetric", "normalise", "seed", "engine")
@@ -75,11 +73,10 @@ def run_train(options: argparse.Namespace) -> int:
     with needs("training", "train"):
         from labial.train import backed_off, check_options, train, without_apex
     from labial.corpus import read_corpora
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
     from labial.tables.model import save
 
-    check(options.output)
-    check_suffix(options.output, ".npz")
+    check(options.output, ".npz")
     if options.adapt is not None:
         return _adapt(options)
     own = _labials_own(options)
@@ -175,10 +172,9 @@ def run_train_words(options: argparse.Namespace) -> int:
     """Trains, writes the tables, and prints what they consist of."""
     with needs("training", "tools"):
         from labial.words import dictionary, tables, training
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    check_suffix(options.output, ".npz")
+    check(options.output, ".npz")
     report = functools.partial(print, file=sys.stderr) if shows_progress(options) else None
     entries = dictionary.read_dictionary(options.dictionary)
     common = dictionary.read_common(options.common or dictionary.COMMON)
@@ -233,10 +229,9 @@ def run_train_hear(options: argparse.Namespace) -> int:
         from labial.hearing import clips, prepared, train
         from labial.hearing.model import load, save
     from labial.files.grammar import read_text
-    from labial.files.outputs import check, check_suffix
+    from labial.files.outputs import check
 
-    check(options.output)
-    check_suffix(options.output, ".npz")
+    check(options.output, ".npz")
     if options.sounds and options.teacher is None:
         raise LabialError("--sounds needs a --teacher")
     count = len(options.folder) + len(options.sounds)

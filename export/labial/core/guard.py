@@ -12,11 +12,10 @@ import warnings
 import weakref
 from typing import Any, Callable, TypeVar, cast
 
-from labial.core.library import DURATION_MAX, ERROR_DURATION, ERROR_STATE, failure
-from labial.errors import StreamError
+from labial.core.library import ARTICULATION_MAX, DURATION_MAX, ERROR_DURATION, ERROR_STATE, failure
+from labial.errors import LabialError, StreamError
 
 Method = TypeVar("Method", bound=Callable[..., Any])
-
 #: Milliseconds: no sound of speech is shorter.
 SHORTEST = 5.0
 
@@ -51,6 +50,14 @@ def duration(value: Any) -> float:
     if not found >= 0.0:
         raise StreamError(ERROR_DURATION, f"{found:g} ms: a duration is a number from 0 on")
     return found
+
+
+def articulation(percent: Any) -> int:
+    """Percent, 0 to ARTICULATION_MAX, rounded. Raises TypeError, and LabialError for a number out of range."""
+    found = number(percent, "an articulation")
+    if not 0.0 <= found <= ARTICULATION_MAX:
+        raise LabialError(f"an articulation of {found:g} is not within 0 .. {ARTICULATION_MAX}")
+    return math.floor(found + 0.5)
 
 
 def expect_milliseconds(longest: float) -> None:

@@ -35,11 +35,9 @@ from labial.errors import LabialError, StreamError, pip
 VARIABLE = "LABIAL_RUNTIME"
 #: FLAT_INTERFACE of flat/flat.h, which says what the functions do.
 _INTERFACE = 8
-
 #: Results of include/labial/result.h that this package distinguishes.
 OK, WAITING, STARVED, DONE = 0, 1, 2, 3
 ERROR_STATE, ERROR_PHONEME, ERROR_DURATION, ERROR_FULL, ERROR_FRAME_RATE, ERROR_NAME = -5, -6, -7, -8, -9, -11
-
 #: LABIAL_DURATION_MAX: the longest duration of one phoneme, milliseconds.
 DURATION_MAX = 3_600_000
 #: LABIAL_CANCEL_MAX: the longest way to rest of a cancel, frames.
@@ -52,8 +50,6 @@ VISEMES = 15
 LAUGH_FULL = 256
 #: How a binary model begins (include/labial/blob.h).
 BLOB_MAGIC = b"LBM1"
-
-
 #: The types of flat/CMakeLists.txt, which makes the library's list of its functions.
 _TYPES: Dict[str, Any] = {
     "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,

@@ -5,17 +5,14 @@ The envelope is the root mean square of the samples under a Hann window of `WIND
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from typing import Sequence, Tuple, Union
+from typing import Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus.episode import Segment
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import wav
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Seconds of the window: at least two periods of a low voice, so that the envelope does not follow glottal pulses.
 WINDOW = 0.025

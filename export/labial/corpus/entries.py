@@ -9,8 +9,8 @@ from dataclasses import is_dataclass
 from functools import lru_cache
 from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from labial.errors import DataError
-from labial.files.grammar import PathLike, is_blank, lines_of, read_text
+from labial.errors import DataError, PathLike
+from labial.files.grammar import is_blank, lines_of, read_text
 from labial.files.limits import MESSAGE_FIELDS, MESSAGE_NESTING
 
 #: Types that hold no fields.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Dict, Iterator, List, Sequence, Tuple, Union
+from typing import Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 
@@ -15,13 +15,11 @@ from labial.corpus.episode import UNSEEN, Episode
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import PhoneSet
 from labial.corpus.timings import LONGEST, phoneme_segments
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 from labial.files.arrays import ArrayError, read_zip
 from labial.files.faps import CHANNELS, FAP_COLUMNS
 from labial.files.grammar import Content, columns_of, number, read_lines, table_rows
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: First line of a frames file.
 HEADER = ",".join(("time", *FAP_COLUMNS))

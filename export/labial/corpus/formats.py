@@ -1,21 +1,202 @@
-"""Phoneme timings in any format: which there are, by which name, suffix or content each is told, and its reader."""
+"""Phoneme timings in any format: which there are, by which name, suffix or content each is told, and its reader.
+
+Files of messages that speech services report become segments, in seconds, as the readers of
+:mod:`labial.corpus.timings` make them. Sounds, as from Piper and Kokoro, are characters of the IPA that become
+phonemes: a stress mark's time goes to the vowel after it, that of a length mark or diacritic to the phoneme before it,
+the two halves of a diphthong or affricate are one phoneme, and punctuation is silence. The blank between two words
+takes time, too, but lips do not rest there: up to `LONGEST_GAP`, its time is added to the phoneme before it.
+
+A service reports fewer visemes than there are phonemes. Each viseme becomes the phoneme that is most frequent in
+English speech among those that it covers or, if two are equally frequent, the one that the viseme is named after. Two
+visemes in a row that occur together in only one English phoneme become that phoneme; rounded lips are W before a vowel,
+else UW.
+"""
 
 from __future__ import annotations
 
 import os
+import unicodedata
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from labial.core import lines
-from labial.corpus import service_files, services
+from labial.corpus import services
 from labial.corpus.entries import Parsed, read_entries
-from labial.corpus.phonesets import AUTO
-from labial.corpus.timings import PathLike, SourceSegment, lab_of, phone_set_of, phoneme_segments, read_segments
-from labial.corpus.words import PLAIN, Pronunciation
-from labial.errors import DataError
+from labial.corpus.phonesets import AUTO, VOWELS
+from labial.corpus.services import KINDS, SERVICES, TABLE, VISEMES, Odd, Timed, Told
+from labial.corpus.timings import SourceSegment, checked, lab_of, phone_set_of, phoneme_segments, read_segments
+from labial.corpus.words import PLAIN, Pronunciation, Word, timings_of, words_of_characters
+from labial.errors import DataError, PathLike, StreamError
 from labial.files.grammar import Content, read_bytes, read_text
+from labial.files.limits import LABEL
+
+#: A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds.
+LONGEST_GAP = 0.15
+#: Duration of the last viseme, seconds: services report only its beginning.
+LAST_VISEME = 0.1
+#: Times that differ by no more, in seconds, are the same.
+_ROUNDING = 1e-3
+#: Messages of which the times go on may overlap by as much, seconds.
+_OVERLAP = 0.02
+_STRESS = ("ˈ", "ˌ")
+
+
+def read_service(path: PathLike, name: str, how: Pronunciation = PLAIN) -> List[SourceSegment]:
+    """Reads a file of a service's messages, in the order of their arrival. Errors are DataErrors with the line where
+    each line is a document of its own, else with the number of the entry. Words and characters get phonemes by
+    :mod:`labial.corpus.words`, as `how` says."""
+    service, odd = SERVICES[name], Odd(strict=True)
+    found: Dict[str, List[Tuple[Optional[str], Told]]] = {kind: [] for kind in KINDS}
+    for item in read_entries(path):
+        for told in service.read(item, odd):
+            found[told.kind].append((service.utterance(item), told))
+    kind = next((kind for kind, messages in found.items() if any(told.items for _, told in messages)), "")
+    items = _all(found[kind], service.times) if kind else []
+    if not items:
+        advice = f": {service.advice}" if service.advice else ""
+        raise DataError(path, None, f"{service.title} times nothing here{advice}")
+    if kind in ("sounds", "labels", "phonemes"):
+        return checked(path, phoneme_segments_of(items, kind))
+    return checked(path, _from_visemes(items, kind) if kind in VISEMES else _from_words(path, items, kind, how))
+
+
+def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Timed]:
+    """The items of messages one after the other. Where messages have keys, they are in the order of these, and the
+    latest of each counts.
+
+    Times begin again with an utterance, and where a service may count from the message before: in one that begins
+    before that one began, or with other words within it, of which it lasts at least half. They then count from the end
+    of all that came before.
+    """
+    if any(told.key is not None for _, told in messages):
+        keyed = {number if told.key is None else told.key: told.items for number, (_, told) in enumerate(messages)}
+        return [item for key in sorted(keyed) for item in keyed[key]]
+    found: List[Timed] = []
+    origin = end = 0.0
+    before: Optional[str] = None
+    last: Optional[Timed] = None
+    for utterance, told in messages:
+        if not told.items:
+            continue
+        first = told.items[0]
+        length = max(item.end or item.start for item in told.items) - first.start
+        again = last is not None and (first.start < last.start - _ROUNDING or (
+            (first.start, first.text) != (last.start, last.text)
+            and end - origin - first.start > max(_OVERLAP, min(length, end - origin - last.start) / 2)))
+        other = last is not None and utterance != before and origin + first.start < end - _ROUNDING
+        if times == "chained" or other or (times == "restart" and again):
+            origin = end
+        found += [item._replace(start=item.start + origin, end=None if item.end is None else item.end + origin)
+                  for item in told.items]
+        end = max(end, *(item.end or item.start for item in found[-len(told.items) :]))
+        before, last = utterance, first
+    return found
+
+
+def phoneme_segments_of(items: Sequence[Timed], kind: str) -> List[SourceSegment]:
+    """Segments of sounds, labels or phonemes; short gaps belong to the phoneme before."""
+    labels = "auto" if kind == "labels" else "ipa"
+    segments = [SourceSegment(item.start, item.start if item.end is None else item.end, item.text,
+                              line=item.place.line, labels=labels) for item in items]
+    if kind == "sounds":
+        return _phonemes_of(segments)
+    if kind == "phonemes":
+        nexts = [*(item.start for item in items[1:]), -1.0]
+        segments = [_grown(one, after, one.label) if one.end < after <= one.end + LONGEST_GAP else one
+                    for one, after in zip(segments, nexts)]
+    return segments
+
+
+def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunciation) -> List[SourceSegment]:
+    def whole(seconds: float) -> int:
+        return round(seconds * 1000)
+
+    if kind == "words":
+        words = [Word(item.text, whole(item.start), None if item.end is None else whole(item.end)) for item in items]
+    else:
+        words = words_of_characters([item.text for item in items], [whole(item.start) for item in items],
+                                    [whole(item.end or item.start) for item in items], how.language)
+    for before, word in zip(words, words[1:]):
+        if word.start < before.start:
+            raise DataError(path, None, f"{word.text!r:.40} begins before {before.text!r:.40}, which comes first")
+    try:
+        timings = timings_of(words, how)
+    except StreamError as error:
+        raise DataError(path, None, str(error)) from None
+    segments, moment = [], 0
+    for label, length in timings:
+        segments.append(SourceSegment(moment / 1000, (moment + length) / 1000, "" if label == "SIL" else label,
+                                      labels="arpabet"))
+        moment += length
+    return segments
+
+
+def _from_visemes(marks: Sequence[Timed], kind: str) -> List[SourceSegment]:
+    ends = [*(mark.start for mark in marks[1:]), marks[-1].start + LAST_VISEME]
+    return [SourceSegment(marks[first].start, ends[last], phoneme, line=marks[first].place.line, labels="arpabet")
+            for (first, last), phoneme in stand_ins([mark.text for mark in marks], kind)]
+
+
+def stand_ins(names: Sequence[str], kind: str) -> List[Tuple[Tuple[int, int], str]]:
+    """The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for."""
+    table = VISEMES[kind]
+    found: List[Tuple[Tuple[int, int], str]] = []
+    at = 0
+    while at < len(names):
+        joined = table.get(" ".join(names[at : at + 2])) if at + 1 < len(names) else None
+        found.append(((at, at), table[names[at]]) if joined is None else ((at, at + 1), joined))
+        at = found[-1][0][1] + 1
+    vowels = VOWELS.split()
+    return [(place, "W" if phoneme == "UW" and following in vowels and following != "UW" else phoneme)
+            for (place, phoneme), following in zip(found, [phoneme for _, phoneme in found[1:]] + [""])]
+
+
+# ---- Sounds
+
+
+def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
+    """Phonemes, in the IPA, of successive characters (see above); "" is silence, and so is every gap."""
+    result: List[SourceSegment] = []
+    begin: Optional[float] = None  # of the stress mark before the next phoneme
+    joins = False  # the next character may be the second half of the phoneme before it
+    for token in tokens:
+        label = token.label
+        last = result[-1] if result and result[-1].label else None
+        if label in _STRESS:
+            begin = token.start if begin is None else begin
+        elif last and begin is None and _is_mark(label):
+            result[-1] = _grown(last, token.end, (last.label + label)[:LABEL])
+        elif last and begin is None and joins and last.label + label in TABLE["pairs"] and token.start <= last.end:
+            result[-1] = _grown(last, token.end, last.label + label)
+        elif last and label.isspace() and token.duration <= LONGEST_GAP:
+            result[-1] = _grown(last, token.end, last.label)
+            joins = False
+        elif _is_silence(label):
+            if result and not last:
+                result[-1] = _grown(result[-1], token.end, "")
+            else:
+                result.append(SourceSegment(token.start, token.end, "", line=token.line))
+            begin = None
+        else:
+            start = token.start if begin is None else begin
+            result.append(SourceSegment(start, token.end, label, line=token.line, labels="ipa"))
+            begin, joins = None, True
+    return result
+
+
+def _grown(segment: SourceSegment, end: float, label: str) -> SourceSegment:
+    return SourceSegment(segment.start, end, label, line=segment.line, labels=segment.labels)
+
+
+def _is_mark(label: str) -> bool:
+    """Whether `label` only modifies the phoneme before it: length, release, nasality, tone."""
+    return bool(label) and all(unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label)
+
+
+def _is_silence(label: str) -> bool:
+    return all(unicodedata.category(c)[0] in "PSZC" for c in label)
 
 
 def names() -> Tuple[str, ...]:
@@ -47,7 +228,7 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
     that moves before the beginning is cut off. `tier` names the tier of a TextGrid."""
     path = stored(path)
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    segments = service_files.read(path, form, how) if form in services.SERVICES else read_segments(path, form, tier)
+    segments = read_service(path, form, how) if form in services.SERVICES else read_segments(path, form, tier)
     if not offset:
         return segments
     moved = _moved(segments, offset)

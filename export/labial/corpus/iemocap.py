@@ -20,11 +20,10 @@ In a dialog ``Ses01F_...`` only speaker F has markers: utterances ``..._M...`` s
 from __future__ import annotations
 
 import math
-import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Dict, List, Optional, Tuple, Union
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
@@ -32,25 +31,20 @@ from labial.corpus.apex import read_wave, with_apexes
 from labial.corpus.episode import Episode, Segment
 from labial.corpus.folder import LARGEST, check_span
 from labial.corpus.phonesets import SPEECH, PhoneSet
-from labial.corpus.pose import align_head
 from labial.corpus.timings import phoneme_segments, read_segments
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.faps import CHANNELS
 from labial.files.grammar import fields_of, number_or_nan, read_lines
-
-PathLike = Union[str, os.PathLike[str]]
 
 RATE = 120.0  #: frames per second of the corpus
 LONGEST_GAP = 0.2  #: seconds that a marker may be missing and is interpolated or held
 MOST_MISSING = 0.2  #: share of an utterance's frames in which any lip or chin marker may be missing
-
 #: Mouth markers from the right corner over the upper lip to the left one and back over the lower lip; the chin.
 MOUTH = ("Mou1", "Mou2", "Mou3", "Mou4", "Mou5", "Mou6", "Mou7", "Mou8", "CH2")
 #: Markers that follow the skull, and how far to trust them: the forehead's move with the brows.
 HEAD = {"MH": 1.0, "LHD": 1.0, "RHD": 1.0, "MNOSE": 1.0, "TNOSE": 1.0, "FH1": 0.1, "FH2": 0.1, "FH3": 0.1}
 #: Nostrils, the upper end of the mouth-nose separation.
 NOSTRILS = ("LNSTRL", "RNSTRL")
-
 #: Channel -> marker, axis, sign, face unit. Positive: jaw and top lip down, bottom lip and corners up, lips forward,
 #: corners outward.
 _X, _Y, _Z = 0, 1, 2
@@ -182,9 +176,8 @@ def neutral_face(utterances: List[_Utterance], silence: str) -> np.ndarray:
     return face
 
 
-def read_iemocap(
-    path: PathLike, phone_set: PhoneSet = SPEECH, refused: Optional[List[DataError]] = None
-) -> List[Episode]:
+def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
+                 refused: Optional[List[DataError]] = None) -> List[Episode]:
     """Reads the corpus under `path`, episodes sorted by name (times from the utterance's start, 120 frames/s).
 
     Malformed files raise DataError. Utterances whose motion has too many gaps, or that have motion but no phoneme
@@ -255,4 +248,34 @@ def _median(markers: np.ndarray) -> np.ndarray:
         present = markers[np.isfinite(markers[:, number]).all(axis=1), number]
         if len(present):
             result[number] = np.median(present, axis=0)
+    return result
+
+
+def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, scale: bool = False) -> np.ndarray:
+    """Rotates and shifts each frame of `markers` (T, M, D) so that its head fits `reference` (M, D) best; D is 2 or 3.
+
+    Weighted least squares over the markers with `weights` (M,) above 0 (Kabsch), with `scale` also a scale for each
+    frame (Umeyama); frames with fewer than three such markers, or with all on a line, become NaN.
+    """
+    present = np.isfinite(markers).all(axis=2) & np.isfinite(reference).all(axis=1)  # (T, M)
+    weight = present * weights
+    usable = (present & (weights > 0)).sum(axis=1) >= 3
+    total = np.where(usable, weight.sum(axis=1), 1.0)[:, None]
+    points, target = np.where(present[..., None], markers, 0.0), np.where(np.isfinite(reference), reference, 0.0)
+    centre = np.einsum("tm,tmi->ti", weight, points) / total
+    target_centre = np.einsum("tm,mi->ti", weight, target) / total
+    a, b = points - centre[:, None], target[None] - target_centre[:, None]
+    u, s, vt = np.linalg.svd(np.einsum("tm,tmi,tmj->tij", weight, a, b))
+    usable &= s[:, 1] > 1e-6 * np.maximum(s[:, 0], 1e-12)
+    flip = np.ones_like(s)
+    flip[:, -1] = np.sign(np.linalg.det(u) * np.linalg.det(vt))
+    rotation = np.einsum("tij,tj,tjk->tik", u, flip, vt)  # row vectors: aligned = (m - centre) @ rotation
+    factor = np.ones(len(markers))
+    if scale:
+        spread = np.einsum("tm,tmi->t", weight, a**2)
+        factor = (s * flip).sum(axis=1) / np.where(spread > 0, spread, 1.0)
+    turned = np.einsum("tmi,tij->tmj", markers - centre[:, None], rotation)
+    aligned = factor[:, None, None] * turned + target_centre[:, None]
+    aligned[~usable] = np.nan
+    result: np.ndarray = aligned
     return result

@@ -19,11 +19,10 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 from labial.core import espeak
 from labial.core.words import read
-from labial.corpus.phonesets import SPEECH
+from labial.corpus.phonesets import SPEECH, VOWELS
 from labial.errors import LabialError, apt, missing, pip
 
 _logger = logging.getLogger("labial")
-
 #: Words that are said to be unspeakable, at most.
 _SAID_MOST = 1000
 #: Words of which a sentence for espeak-ng has, at most.
@@ -46,7 +45,7 @@ _MARKED = re.compile(r"\([a-z][\w-]*\)|[0-9.]")
 _N = re.compile("ũ(?=_[ˈˌ]?[pbm])"), re.compile("ũ")
 #: The vowel of Japanese "desu" and "masu", which is whispered.
 _DEVOICED = re.compile("(?<=(?:D EH|M AE) S) UH(?= K|$)")
-_VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+_VOWELS = frozenset(VOWELS.split())
 
 _INITIALS = {"b": "B", "p": "P", "m": "M", "f": "F", "d": "D", "t": "T", "n": "N", "l": "L", "g": "G", "k": "K",
              "h": "HH", "j": "JH", "q": "CH", "x": "SH", "zh": "JH", "ch": "CH", "sh": "SH", "r": "R", "z": "D Z",

@@ -23,16 +23,15 @@ The bottom lip follows the jaw, the top lip rises a little with the smile, and b
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
-from typing import List, Tuple, Union
+from typing import List, Tuple
 
 import numpy as np
 
 from labial.corpus.folder import HEADER
 from labial.corpus.phonesets import LAUGHTER_GRADES
 from labial.defaults import EPISODES
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.outputs import folder
 
@@ -51,7 +50,6 @@ PERIOD_SHORTEST, PERIOD_LONGEST = 140, 280
 TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
 #: Shortest phoneme, milliseconds: one frame.
 SHORTEST = 20
-
 #: A phoneme's mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
 GESTURES = {
     "silence": (0.16, 0.60, 0.0),
@@ -71,7 +69,6 @@ _JAW = 600.0  # FAP 3 of the widest opening: about 18 mm of an adult's face
 #: The jaw's opening and the smile of the softest laugh, a hum; the loudness from which the lips part freely.
 _HUMMED, _FAINT, _PARTED = 0.06, 0.12, 0.35
 _STEP = 5  # ms between samples of the motion before it is sampled at FPS
-
 #: Kinds of a pulse and their shares: vowel after breath, vowel and silence, cackle, closed lips, glottal stop first.
 PULSES, PULSE_SHARES = ("h", "bare", "cackle", "nasal", "stop"), (0.62, 0.12, 0.10, 0.09, 0.07)
 VOWELS, VOWEL_SHARES = ("a", "e", "o", "ic"), (0.40, 0.34, 0.10, 0.16)
@@ -82,7 +79,6 @@ ONSETS = {"ne": 0.25, "click": 0.15, "grunt": 0.20, "plosive": 0.15}
 #: How often a pause between trains has an inhalation, that inhalation a click before it, and is by the nose; and how
 #: often the pause has a grunt, a silence and a longer rest.
 INHALED, CLICKED, BY_NOSE, GRUNTED, SILENT, RESTED = 0.75, 0.2, 0.75, 0.18, 0.5, 0.15
-
 #: How much softer a pulse is than the one before it, and a train than the one before.
 PULSE_DECAY, TRAIN_DECAY = 0.93, 0.92
 #: How loud air is drawn in after a train, of the train's loudness.
@@ -95,7 +91,7 @@ _UNGRADED = {graded: label for label, grades in LAUGHTER_GRADES.items() for grad
 _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
 
-def generate(out_dir: Union[str, os.PathLike[str]], episodes: int = EPISODES, seed: int = 0) -> None:
+def generate(out_dir: PathLike, episodes: int = EPISODES, seed: int = 0) -> None:
     """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
 
     Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
@@ -113,7 +109,7 @@ def generate(out_dir: Union[str, os.PathLike[str]], episodes: int = EPISODES, se
         _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
 
-def is_synthetic(path: Union[str, os.PathLike[str]]) -> bool:
+def is_synthetic(path: PathLike) -> bool:
     """Whether the folder's README says that :func:`generate` made it."""
     try:
         with open(Path(path) / "README.md", encoding="utf-8", errors="replace") as readme:

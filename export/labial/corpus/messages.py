@@ -11,8 +11,8 @@ import logging
 from typing import Any, Dict, List, NamedTuple, Optional, Tuple
 
 from labial.corpus.entries import Entry, documents, fields_of, is_list, shown
+from labial.corpus.formats import LONGEST_GAP, phoneme_segments_of
 from labial.corpus.phonesets import AUTO, SPEECH
-from labial.corpus.service_files import LONGEST_GAP, phoneme_segments_of
 from labial.corpus.services import SERVICES, Odd, Timed, Told, service_of
 from labial.errors import DataError, LabialError, did_you_mean
 from labial.files.limits import MESSAGE_DOCUMENTS, MESSAGE_ITEMS, MESSAGE_TEXT

@@ -1,7 +1,7 @@
 r"""Phone sets: a model's phonemes, their viseme classes, the boundaries of units, and the aliases.
 
 A *phoneme* is a label of a model's inventory, an *alias* a label of some front end or corpus that means one. The
-meaning of an alias depends on the set of labels that it belongs to (:mod:`labial.corpus.aliases`); if none is named,
+meaning of an alias depends on the set of labels that it belongs to (:mod:`labial.corpus.labels`); if none is named,
 ARPABET comes before the IPA, and the IPA before X-SAMPA.
 
 Viseme classes of speech group what lips and jaw do, not what the tongue does: so /k g ng/ go with /hh/, which leave the
@@ -15,8 +15,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Collection, Dict, List, Optional, Sequence, Tuple
 
-from labial.corpus.aliases import LABEL_SETS, LAUGHTER_LABELS, SPEECH_LABELS
-from labial.corpus.labels import AUTO, find, find_first, longest_of, nearest, normalise
+from labial.corpus.labels import (
+    AUTO,
+    LABEL_SETS,
+    LAUGHTER_LABELS,
+    SPEECH_LABELS,
+    find,
+    find_first,
+    longest_of,
+    nearest,
+    normalise,
+)
 
 __all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet",
            "aliases_for",
@@ -125,9 +134,8 @@ def candidates_for(label: str) -> List[str]:
     return list(dict.fromkeys([*order, phone_set.silence]))
 
 
-def _phone_set(
-    kind: str, groups: Dict[str, str], boundary: str, order: str, aliases: Dict[str, Dict[str, str]]
-) -> PhoneSet:
+def _phone_set(kind: str, groups: Dict[str, str], boundary: str, order: str,
+               aliases: Dict[str, Dict[str, str]]) -> PhoneSet:
     phonemes = tuple(order.split())
     index = {label: number for number, labels in enumerate(groups.values()) for label in labels.split()}
     ends = boundary.split()
@@ -167,11 +175,9 @@ _SPEECH_CLASSES = {
     "mid": "AH EH",
     "spread": "IY IH EY Y",
 }
-
 #: What is laughed softly, lips nearly closed, and loudly, mouth wide open, has phonemes of its own: by the phoneme of
 #: middle loudness, which is what every label without a grade means.
 LAUGHTER_GRADES = {label: (f"{label}_soft", f"{label}_loud") for label in "fricative ic e o cackle a".split()}
-
 #: Declared substitutes, closest first. Vowels look for vowels and /p b m/ for each other, so that units stay units.
 _ALIKE = {
     "AA": "AO AY AE AH AW", "AE": "EH AA AY AH", "AH": "EH AA UH ER AE IH", "AO": "OW AA OY UH", "AW": "AA OW AE AO",
@@ -207,11 +213,9 @@ _LAUGHTER_CLASSES = {
 
 _ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(label, '')}"
                    for label in ("SIL", *ARPABET)}  # fmt: skip
-
 #: English speech: 39 ARPABET phonemes and silence.
 SPEECH = _phone_set("speech", _SPEECH_CLASSES, f"{VOWELS} P B M", " ".join(("SIL", *ARPABET)),
                     {**SPEECH_LABELS, "arpabet": _ARPABET_LABELS})
-
 #: The twelve laughter phonemes, whose labels are the same in every set, and the soft and loud grades of six of them.
 LAUGHTER = _phone_set(
     "laughter", _LAUGHTER_CLASSES,
@@ -220,6 +224,5 @@ LAUGHTER = _phone_set(
               *(item for grades in LAUGHTER_GRADES.values() for item in grades)]),
     dict.fromkeys(LABEL_SETS, LAUGHTER_LABELS),
 )  # fmt: skip
-
 #: Phone set of each kind of model.
 PHONE_SETS = {"speech": SPEECH, "laughter": LAUGHTER}

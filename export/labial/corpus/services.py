@@ -1,7 +1,7 @@
 """What speech services and neural synthesisers report as JSON: the table services.json, and its interpreter.
 
 The table says of each service which lists and fields of its messages have texts and times; web/services.js reads the
-same. :mod:`labial.corpus.service_files` makes segments of a file of messages; :mod:`labial.corpus.messages` reads
+same. :mod:`labial.corpus.formats` makes segments of a file of messages; :mod:`labial.corpus.messages` reads
 messages as they arrive.
 """
 
@@ -21,7 +21,6 @@ from labial.errors import DataError
 
 #: No word or phoneme lasts longer, in seconds.
 _LONGEST_ITEM = 3600.0
-
 #: The table as it stands in the file.
 TABLE = json.loads(Path(__file__).with_name("services.json").read_text(encoding="utf-8"))
 #: By the service, the phoneme of each viseme, and of two in a row with a blank between them.

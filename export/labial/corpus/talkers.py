@@ -19,24 +19,21 @@ outside silence. Where a corpus says that a channel's ``scale`` is its own, the 
 
 from __future__ import annotations
 
-import os
 import warnings
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple, Union
+from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 import numpy as np
 
 from labial.corpus.episode import Episode, Source
+from labial.errors import PathLike
 from labial.files.faps import FAP_COLUMNS
 from labial.files.toml import Table, meant, read_toml
 
-PathLike = Union[str, os.PathLike[str]]
-
 #: The name of the file.
 FILE = "corpus.toml"
-
 #: The largest weight: beyond it the other corpora have no effect.
 LARGEST_WEIGHT = 1000.0
 
@@ -61,10 +58,8 @@ def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]
     if "talkers" not in table.content:
         return [replace(item, source=common) for item in episodes]
     told = _talkers(table, [item.name for item in episodes])
-    return [
-        replace(item, source=replace(common, talker=told[item.name][0], recording=str(where / told[item.name][1])))
-        for item in episodes
-    ]
+    return [replace(item, source=replace(common, talker=told[item.name][0], recording=str(where / told[item.name][1])))
+            for item in episodes]
 
 
 def _channels(table: Table, key: str) -> FrozenSet[int]:
@@ -167,9 +162,8 @@ def _rest(corpus: Sequence[Episode], silence: str, default: np.ndarray) -> np.nd
     return np.median(np.concatenate(frames), axis=0) if sum(map(len, frames)) else default
 
 
-def _common_deviation(
-    names: Sequence[str], moments: Dict[str, Tuple[np.ndarray, np.ndarray]], share: Dict[str, int]
-) -> np.ndarray:
+def _common_deviation(names: Sequence[str], moments: Dict[str, Tuple[np.ndarray, np.ndarray]],
+                      share: Dict[str, int]) -> np.ndarray:
     """(13,) the standard deviation of several recordings, each about its own mean."""
     return np.sqrt(np.average([moments[name][1] ** 2 for name in names], axis=0, weights=[share[n] for n in names]))
 
@@ -181,9 +175,7 @@ def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviat
     return [_brought(item, moments[item.source.recording], mean, deviation) for item in corpus]
 
 
-def _brought(
-    item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray
-) -> Episode:
+def _brought(item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray) -> Episode:
     """The episode with its recording's mean and standard deviation, `own`, brought to others."""
     own_mean, own_deviation = own
     moves = own_deviation > 1e-9

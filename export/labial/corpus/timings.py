@@ -9,23 +9,20 @@ are in the file until :func:`phoneme_segments` maps them to a phone set and fill
 from __future__ import annotations
 
 import math
-import os
 import re
 import warnings
 from dataclasses import dataclass, field
 from io import StringIO
 from itertools import islice
-from typing import Iterable, List, Optional, Sequence, Set, Tuple, Union
+from typing import Iterable, List, Optional, Sequence, Set, Tuple
 
 from labial.core import lines
 from labial.core.guard import SHORTEST
 from labial.core.lines import LAUGH
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import AUTO, PHONE_SETS, PhoneSet
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.grammar import read_text
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Overlaps and gaps up to this many seconds come from rounding and are closed.
 TOLERANCE = 0.001
@@ -89,10 +86,8 @@ def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> 
     return phone_set.resolve(segment.label, labels) if known is None else known
 
 
-def phoneme_segments(
-    path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True, labels: str = AUTO,
-    laughs: bool = False
-) -> Tuple[Segment, ...]:
+def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True,
+                     labels: str = AUTO, laughs: bool = False) -> Tuple[Segment, ...]:
     """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
     error message.
 

@@ -17,17 +17,14 @@ from labial.corpus.languages import HAN, is_chinese, pronounced
 from labial.errors import LabialError, needs
 
 _logger = logging.getLogger("labial")
-
 #: The language of the library's tables.
 ENGLISH = "en"
 #: Latest time, milliseconds: the library counts in 32 bits.
 LATEST = (1 << 32) - 2
-
 #: What a text's words are looked up by: letters, digits and what may stand within a word.
 _STRETCH = re.compile(r"[^\W_]+(?:['’\-.,][^\W_]+)*")
 _NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
 _TAGS = {"[": "]", "<": ">"}
-
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
 #: Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks.

@@ -34,7 +34,6 @@ from labial.tables.quantise import ExportedModel
 #: Against float64 on the same tables, after rounding to whole FAP units.
 LARGEST = 1.0
 RMS = 0.25
-
 #: Against the float model: root mean square in percent of each channel's range.
 SHARE = 1.0
 #: With fewer frames (20 s) that share is not judged: one phoneme for which the rounded tables find another path exceeds
@@ -138,11 +137,7 @@ def compare(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
         return np.concatenate([delivered(part, exact=True) for part in np.split(motion, lengths)])
 
     difference = frames - np.floor(from_rest(same) + 0.5)
-    return Comparison(
-        frames=len(frames),
-        tables_largest=np.abs(difference).max(axis=0),
-        tables_rms=np.sqrt(np.mean(difference**2, axis=0)),
-        model_rms=np.sqrt(np.mean((frames - from_rest(wanted)) ** 2, axis=0)),
-        extent=channel_extent(model, wanted),
-        by_design=deviation(model, streams, wanted, same, as_built),
-    )
+    return Comparison(frames=len(frames), tables_largest=np.abs(difference).max(axis=0),
+                      tables_rms=np.sqrt(np.mean(difference**2, axis=0)),
+                      model_rms=np.sqrt(np.mean((frames - from_rest(wanted)) ** 2, axis=0)),
+                      extent=channel_extent(model, wanted), by_design=deviation(model, streams, wanted, same, as_built))

@@ -14,7 +14,7 @@ from typing import Callable, Dict, List, Optional
 
 import numpy as np
 
-from labial.evaluate import variants
+from labial.evaluate.choices import Task, compare, setting
 from labial.evaluate.material import Timeline
 from labial.files.faps import CHANNELS
 from labial.reference import published, stream
@@ -94,9 +94,9 @@ DEPARTURES = (
 )
 
 
-def run_split(task: variants.Task) -> List[Dict[str, float]]:
+def run_split(task: Task) -> List[Dict[str, float]]:
     """The measures of every departure on one split, and those of the published method."""
-    training, timelines, judge = variants.setting(task)
+    training, timelines, judge = setting(task)
     model, paper = training.model("labial"), FloatTables(training.model("paper"))
     motions = [[item.synthesise(item.back(model), timeline) for timeline in timelines] for item in DEPARTURES]
     motions.append([published.synthesise(paper, timeline.stream) for timeline in timelines])
@@ -106,7 +106,7 @@ def run_split(task: variants.Task) -> List[Dict[str, float]]:
 def main(arguments: Optional[List[str]] = None) -> int:
     """The command line; see the module."""
     titles = [*(item.title for item in DEPARTURES), "everything: the published method"]
-    return variants.main("departures", __doc__.split("\n")[0], "taken back", lambda _: titles, run_split, 2, arguments)
+    return compare("departures", __doc__.split("\n")[0], "taken back", lambda _: titles, run_split, 2, arguments)
 
 
 if __name__ == "__main__":

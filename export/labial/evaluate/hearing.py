@@ -1,29 +1,105 @@
 """``labial evaluate-hear``: lips from sound, compared with those that Labial makes of the true times of phonemes.
 
 The figures are those of :mod:`labial.hearing.measures`. Sounds are folders of speech, as for ``labial train-hear``, and
-sentences spoken by synthesisers. Each is also judged in conditions that degrade it, and beside methods that follow
-loudness alone (:mod:`labial.evaluate.loudness`).
+sentences spoken by synthesisers. Each is also judged in conditions that degrade it, and beside what most
+talking things do today: a mouth that opens with the loudness of the sound. Both such methods know the loudness of the
+whole sound in advance and so are at their best; a device would have to guess it.
 """
 
 from __future__ import annotations
 
 import zlib
+from functools import cache
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
-from labial.corpus.timings import PathLike
-from labial.evaluate.loudness import loudness, loudness_and_crossings
+from labial.corpus.phonesets import SPEECH
+from labial.errors import PathLike
 from labial.hearing import clips, distort, targets
-from labial.hearing.features import RATE, frames_of
+from labial.hearing.features import FRAME, RATE, frames_of
 from labial.hearing.integer import delivered
 from labial.hearing.measures import Figures, Judged, delay, measured
 from labial.hearing.model import HearingModel
 from labial.hearing.network import hear
 from labial.hearing.quantise import quantise
-from labial.hearing.speech_corpus import read_sentences
-from labial.hearing.voices import speak
+from labial.hearing.targets import closure, frames
+from labial.hearing.voices import read_sentences, speak
+
+#: dB below the loud frames' level at which the mouth is shut.
+_RANGE = 30.0
+#: Crossings of zero per second from and to which a sound counts as a fricative, and how far the mouth is open in one.
+_CROSSINGS, _FRICATIVE = (3000.0, 5000.0), 0.3
+#: The share of a new frame's loudness in what the mouth follows.
+_FOLLOWS = 0.7
+
+
+@cache
+def _open_pose() -> np.ndarray:
+    """(13,) FAP units: the middle of a long AA."""
+    result: np.ndarray = frames([(SPEECH.silence, 200), ("AA", 400)], 30)[20]
+    return result
+
+
+@cache
+def _shut_pose() -> np.ndarray:
+    return closure().pose
+
+
+def _pieces(sound: np.ndarray) -> np.ndarray:
+    count = frames_of(len(sound))
+    return np.pad(np.asarray(sound, np.float64), (0, count * FRAME - len(sound))).reshape(count, FRAME)
+
+
+def levels(sound: np.ndarray) -> np.ndarray:
+    """(T,) dB: the level of each frame of an int16 sound."""
+    result: np.ndarray = 10 * np.log10(np.square(_pieces(sound)).mean(axis=1) + 1.0)
+    return result
+
+
+def shares(level: np.ndarray) -> np.ndarray:
+    """(T,) 0 .. 1: the loudness of frames whose levels are (T,) dB, from `_RANGE` dB below the loud ones up to them."""
+    if not len(level):
+        return np.zeros(0)
+    found: np.ndarray = np.clip((level - np.percentile(level, 95)) / _RANGE + 1.0, 0.0, 1.0)
+    smooth: np.ndarray = np.empty_like(found)
+    last = 0.0
+    for k, value in enumerate(found):
+        last += _FOLLOWS * (value - last)
+        smooth[k] = last
+    return smooth
+
+
+def crossings(sound: np.ndarray) -> np.ndarray:
+    """(T,) how often a second each frame changes its sign."""
+    signs: np.ndarray = np.signbit(_pieces(sound))
+    result: np.ndarray = (signs[:, 1:] != signs[:, :-1]).sum(axis=1) * (RATE / FRAME)
+    return result
+
+
+def loudness(sound: np.ndarray) -> np.ndarray:
+    """(T, 13) FAP units: between closed lips and an open mouth by loudness."""
+    return loudness_of(levels(sound))
+
+
+def loudness_of(level: np.ndarray) -> np.ndarray:
+    """The same for frames whose levels are (T,) dB."""
+    return _pose(shares(level))
+
+
+def loudness_and_crossings(sound: np.ndarray) -> np.ndarray:
+    """The same, but nearly shut where many crossings of zero tell a fricative."""
+    low, high = _CROSSINGS
+    fricative = np.clip((crossings(sound) - low) / (high - low), 0.0, 1.0)
+    return _pose(shares(levels(sound)) * (1 - (1 - _FRICATIVE) * fricative))
+
+
+def _pose(share: np.ndarray) -> np.ndarray:
+    shut = _shut_pose()
+    result: np.ndarray = shut + share[:, None] * (_open_pose() - shut)
+    return result
+
 
 #: Sentences that no bundled network was trained on, which voices say here.
 SENTENCES = Path(clips.__file__).with_name("sentences.txt")
@@ -33,7 +109,6 @@ VOICES = ("flite:awb", "espeak:en-us+klatt4", "espeak:en-us+f5", "espeak:en-us+J
 PEAK = -6.0
 #: Frames of delay that are looked for: 300 ms, more than any method has.
 LATEST = 15
-
 #: (N,) int16 at 16 kHz -> (T, 13) frames, T of `frames_of(N)`.
 Method = Callable[[np.ndarray], np.ndarray]
 _Phonemes = List[Tuple[str, int]]
@@ -144,9 +219,7 @@ def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
 # ---- Figures
 
 
-def evaluated(
-    sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]
-) -> Iterator[Row]:
+def evaluated(sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]) -> Iterator[Row]:
     """A row for each set, condition and method. The distortions of a sound are the same for all methods."""
     for item in sets:
         true = [(targets.frames(timings, frames_of(len(sound))), targets.classes(timings, frames_of(len(sound))))

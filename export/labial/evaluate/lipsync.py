@@ -99,7 +99,7 @@ def closures_of(episodes: Sequence[Episode]) -> List[Tuple[int, int]]:
     found, first = [], 0
     for episode in episodes:
         for segment in episode.segments:
-            # As in labial.fit.sentences: from the last frame before the closure may begin to the last before its end.
+            # As in labial.fit.solve: from the last frame before the closure may begin to the last before its end.
             begin, end = np.searchsorted(episode.times, (segment.start - _AROUND, segment.end + _AROUND), side="right")
             if segment.label in ("P", "B", "M") and end > 0:
                 found.append((first + max(int(begin) - 1, 0), first + int(end)))

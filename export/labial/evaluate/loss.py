@@ -80,22 +80,13 @@ def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
     found = np.concatenate([as_device(tables, stream) for stream in streams])
     difference = found - expected
     paths = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
-    return Loss(
-        rms=np.sqrt(np.mean(difference**2, axis=0)),
-        largest=np.abs(difference).max(axis=0),
-        extent=channel_extent(model, expected),
-        path=paths.mean(axis=0),
-        by_design=deviation(model, streams, expected, found),
-    )
+    return Loss(rms=np.sqrt(np.mean(difference**2, axis=0)), largest=np.abs(difference).max(axis=0),
+                extent=channel_extent(model, expected), path=paths.mean(axis=0),
+                by_design=deviation(model, streams, expected, found))
 
 
-def deviation(
-    model: Model,
-    streams: Sequence[Stream],
-    published: np.ndarray,
-    found: np.ndarray,
-    as_built: Callable[[Tables, Stream], np.ndarray] = as_device,
-) -> Optional[Deviation]:
+def deviation(model: Model, streams: Sequence[Stream], published: np.ndarray, found: np.ndarray,
+              as_built: Callable[[Tables, Stream], np.ndarray] = as_device) -> Optional[Deviation]:
     """The deviation over `streams`, of which `published` (T, 13) is the float model's motion, by the reference of its
     method, and `found` (T, 13) that of the exported tables, FAP; `as_built` is the reference
     of the run-time's method. None for a model that is not of the published method."""

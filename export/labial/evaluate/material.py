@@ -198,9 +198,7 @@ def _draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
     return np.sort(rng.permutation(candidates)[:count])
 
 
-def make_splits(
-    corpus: Sequence[Utterance], count: int, seed: int, held_out: Sequence[str] = ()
-) -> List[Split]:
+def make_splits(corpus: Sequence[Utterance], count: int, seed: int, held_out: Sequence[str] = ()) -> List[Split]:
     """`count` splits, each drawn by a generator of its own, so that split n is the same whatever `count` is.
 
     With `held_out` words the test part is every episode that contains one of them, of which only those words' frames
@@ -235,12 +233,8 @@ def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
         raise LabialError("a talker is left out of a second corpus, but there is only one")
     further = range(first, len(corpus))
     return [
-        Split(
-            number,
-            tuple(range(first)),
-            tuple(index for index in further if corpus[index].episode.source.talker == talker),
-            added=tuple(index for index in further if corpus[index].episode.source.talker != talker),
-            talker=talker,
-        )
+        Split(number, tuple(range(first)),
+              tuple(index for index in further if corpus[index].episode.source.talker == talker),
+              added=tuple(index for index in further if corpus[index].episode.source.talker != talker), talker=talker)
         for number, talker in enumerate(talkers)
     ]

@@ -15,17 +15,13 @@ from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
-
 #: In speech they count as firmly closed below this percentile of the human's least openness in the training part's #:
 #: p, b, m.
 FIRM_PERCENTILE = 50.0
-
 #: A closure is searched in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04
-
 #: Seams are searched where units meet; short units are joined until they have so many frames.
 JOINED_FRAMES = 16
-
 #: The viseme classes whose phonemes close the lips, of speech and of laughter; without them there are no closure rates.
 CLOSED_CLASSES = ("bilabial", "nose")
 
@@ -83,12 +79,10 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
     )
     risen = [rises(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
     pulses = np.concatenate(risen) if has_pulses(phone_set) else np.zeros(0)
-    return Scale(
-        maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
-        closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
-        firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
-        pulse=float(np.percentile(pulses, SEEN_PERCENTILE)) if len(pulses) else float("nan"),
-    )
+    return Scale(maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
+                 closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
+                 firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
+                 pulse=float(np.percentile(pulses, SEEN_PERCENTILE)) if len(pulses) else float("nan"))
 
 
 def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -100,23 +94,15 @@ def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.n
 class Judge:
     """Judges methods by the human motion of a test part."""
 
-    def __init__(
-        self,
-        test: Sequence[Utterance],
-        masks: Sequence[np.ndarray],
-        scale: Scale,
-        phone_set: PhoneSet,
-        fps: int,
-    ) -> None:
+    def __init__(self, test: Sequence[Utterance], masks: Sequence[np.ndarray], scale: Scale, phone_set: PhoneSet,
+                 fps: int) -> None:
         """`masks`: per utterance (T,) bool, the frames that are judged."""
         self._test, self._masks, self._scale = list(test), list(masks), scale
         self._phone_set, self._fps = phone_set, fps
         self._pulsing = has_pulses(phone_set)
         self._human = self._pooled([item.human for item in test])
         self._grouping, self._groups, group_of = groups(phone_set)
-        self._group_at = np.concatenate(
-            [group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)]
-        )
+        self._group_at = np.concatenate([group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)])
         self._joins = [self._unit_joins(item) for item in test]
         self._human_jerk = self._jerk([item.human for item in test])
 
@@ -160,10 +146,8 @@ class Judge:
 
     def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
         """(2,) share of the phonemes that close the lips where they do, and do so firmly."""
-        least = [
-            least_openness(item, frames, mask, self._phone_set, self._fps)
-            for item, frames, mask in zip(self._test, motion, self._masks)
-        ]
+        least = [least_openness(item, frames, mask, self._phone_set, self._fps)
+                 for item, frames, mask in zip(self._test, motion, self._masks)]
         found = np.concatenate(least) if least else np.zeros(0)
         if not len(found):
             return np.full(2, np.nan)
@@ -238,12 +222,9 @@ def judged_frames(test: Sequence[Utterance], phone_set: PhoneSet, words: Sequenc
 
 #: Names of the labial parameters of the paper's Table 1.
 PARAMETERS = ("openness", "extension", "top", "bottom")
-
 #: The channels of correlation, amplitude, jitter and seams.
 JUDGED_NAMES = ("open_jaw", "raise_b_midlip_o", "stretch_l_cornerlip_o", "push_t_lip")
 JUDGED = tuple(FAP_NAMES.index(name) for name in JUDGED_NAMES)
-
-
 #: The measures of connected speech, which need no common scale of talkers: jaw, lips, a corner, and openness.
 LIPS = ("open_jaw", "lower_t_midlip_o", "raise_b_midlip_o", "stretch_l_cornerlip_o", "openness")
 
@@ -309,10 +290,8 @@ def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
 
 #: A pulse's peak is searched in its phoneme and this many seconds to both sides.
 REACH = 0.04
-
 #: A pulse is visible if it rises further than this percentile of the original's pulses in the training part.
 SEEN_PERCENTILE = 20.0
-
 #: Vowel-like phonemes whose beginnings are further apart than this are of two trains, milliseconds.
 TRAIN_GAP = 400
 

@@ -23,8 +23,7 @@ import numpy as np
 import soxr
 
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike
-from labial.errors import LabialError, apt, missing, needs
+from labial.errors import LabialError, PathLike, apt, missing, needs
 from labial.files.faps import CHANNELS
 from labial.hearing.features import RATE, frames_of
 from labial.hearing.targets import FRAME_MS, closure, durations, frames
@@ -37,7 +36,6 @@ VISEMES: Dict[str, str] = {
 #: Methods, and the npm package that each needs.
 PACKAGES: Dict[str, str] = {"wawa-lipsync": "wawa-lipsync", "wawa-lipsync unsmoothed": "wawa-lipsync",
                             "headaudio": "@met4citizen/headaudio", "pocketsphinx": ""}  # fmt: skip
-
 #: Samples a second of the browser's sound, what it hears at once, and how often its page is drawn.
 BROWSER_RATE, BLOCK, PER_SECOND = 48000, 128, 60
 #: Samples that the AnalyserNode looks at, the share of what it reported before, dB of its levels 0 and 255.

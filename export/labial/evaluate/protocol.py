@@ -1,20 +1,33 @@
 """The comparison: fit every method on each split's training part, measure it on the rest (docs/method.md, How it is
-judged)."""
+judged).
+
+Finished splits are stored on the disk, so that an interrupted evaluation can continue. Each is a file of the folder
+``.splits`` in the report's folder: the measures as JSON, and the motion for plots as arrays. A file is valid only for
+the same corpus, options and versions; the folder is removed when the report is written.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import io
+import json
 import os
-from dataclasses import replace
+import shutil
+import warnings
+import zipfile
+from contextlib import suppress
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+import labial
+from labial.core.library import library_path
 from labial.corpus.episode import Episode
 from labial.corpus.phonesets import PHONE_SETS, PhoneSet
 from labial.errors import LabialError
 from labial.evaluate.baselines import steps
-from labial.evaluate.kept import Kept
 from labial.evaluate.material import (
     Example,
     Options,
@@ -29,7 +42,92 @@ from labial.evaluate.measures import Judge, has_pulses, judged_frames, longest_t
 from labial.evaluate.methods import predict_all, select
 from labial.evaluate.readability import LipReader
 from labial.evaluate.training import Training
-from labial.train.workers import Workers
+from labial.files.arrays import array, read_zip
+from labial.files.outputs import writing
+from labial.train.workers import Workers, versions
+
+#: Their folder in the report's folder.
+FOLDER = ".splits"
+#: Most bytes of a file.
+_LARGEST = 500_000_000
+
+
+class Kept:
+    """The finished splits of one evaluation in `folder`, that of the report."""
+
+    def __init__(self, folder: Path, corpus: Sequence[Utterance], options: Options) -> None:
+        self._folder = folder / FOLDER
+        self._corpus = corpus
+        self._of = _fingerprint(corpus, options)
+
+    def find(self, split: Split) -> Optional[Outcome]:
+        """The stored split, or None."""
+        try:
+            members = read_zip(self._path(split), None, _LARGEST)
+            about = json.loads(members["outcome.json"])
+            if about["of"] != self._of or about["split"] != json.loads(json.dumps(astuple(split))):
+                return None
+            outcome = Outcome(split, about["frames"], about["measures"], about["seconds"])
+            if about["example"] is not None:
+                shown, stretch = about["example"]["index"], about["example"]["stretch"]
+                motion = {name: array(name, members[f"{number}.npy"])
+                          for number, name in enumerate(about["example"]["motion"])}
+                outcome = replace(outcome, example=Example(
+                    about["example"]["kind"], shown, self._corpus[shown], stretch and tuple(stretch),
+                    array("steps", members["steps.npy"]), motion))
+        except (OSError, LabialError, ValueError, KeyError, TypeError, IndexError):  # none, or another version's
+            return None
+        return outcome
+
+    def keep(self, outcome: Outcome) -> None:
+        """Stores a split; warns if that fails, since the evaluation can continue without."""
+        example = outcome.example
+        arrays: Dict[str, np.ndarray] = {}
+        about: Dict[str, object] = {"of": self._of, "split": astuple(outcome.split), "frames": outcome.frames,
+                 "measures": outcome.measures, "seconds": outcome.seconds, "example": None}
+        if example is not None:
+            about["example"] = {"kind": example.kind, "index": example.index, "stretch": example.stretch,
+                                "motion": list(example.motion)}
+            arrays = {"steps": example.steps, **{str(n): item for n, item in enumerate(example.motion.values())}}
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            with writing(self._path(outcome.split)) as file, zipfile.ZipFile(file, "w") as archive:
+                archive.writestr("outcome.json", json.dumps(about))
+                for name, values in arrays.items():
+                    buffer = io.BytesIO()
+                    np.lib.format.write_array(buffer, np.ascontiguousarray(values), allow_pickle=False)
+                    archive.writestr(f"{name}.npy", buffer.getvalue())
+        except (OSError, LabialError) as error:
+            warnings.warn(f"split {outcome.split.number} is not kept for another start: {error}", stacklevel=1)
+
+    def _path(self, split: Split) -> Path:
+        return self._folder / f"{split.number}.zip"
+
+
+def remove_kept(folder: Path) -> None:
+    """Removes the stored splits of the report in `folder`."""
+    shutil.rmtree(folder / FOLDER, ignore_errors=True)
+
+
+def _fingerprint(corpus: Sequence[Utterance], options: Options) -> str:
+    """A checksum of everything that outcomes depend on, including Labial's code, so that no report mixes two versions
+    of it."""
+    found = hashlib.sha256()
+    sources = list(Path(labial.__file__).parent.rglob("*.py"))
+    with suppress(LabialError):  # without the library the methods that need it report an error
+        sources.append(library_path())
+    for path in sorted(sources):
+        found.update(path.read_bytes())
+    named = replace(options, methods=",".join(method.name for method in select(options.methods)))
+    found.update(repr((named, sorted(versions().items()))).encode())
+    for item in corpus:
+        of = item.episode.source
+        found.update(repr((item.episode.name, item.episode.segments, replace(of, left_out=frozenset()),
+                           sorted(of.left_out))).encode())
+        for values in (item.episode.times, item.episode.frames):
+            found.update(np.ascontiguousarray(values).tobytes())
+    return found.hexdigest()
+
 
 #: The human's own motion goes through the same measures under this name.
 HUMAN = "human"
@@ -94,14 +192,12 @@ def _run(task: Tuple[List[Utterance], Split, Options]) -> Outcome:
     return run_split(*task)
 
 
-def evaluate(
-    episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
-    engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None,
-) -> List[Outcome]:
+def evaluate(episodes: Sequence[Episode], options: Options, *, further: Sequence[Episode] = (), jobs: int = 1,
+             engine: Optional[str] = None, progress: bool = True, folder: Optional[Path] = None) -> List[Outcome]:
     """All splits of `episodes` in order; Labial's models are trained on `further` ones, too, unless the options
     say otherwise. With `leave_out_talkers` each talker of `further` in turn is left out and judged. The outcomes do not
     depend on `jobs`, the number of processes, nor on `engine` (:class:`labial.train.workers.Workers`). Finished splits
-    are stored in `folder`, that of the report, and reused from there (:mod:`labial.evaluate.kept`)."""
+    are stored in `folder`, that of the report, and reused from there."""
     phone_set = PHONE_SETS[options.kind]
     corpus = utterances(episodes, phone_set, options.fps)
     first = len(corpus)
@@ -111,14 +207,11 @@ def evaluate(
     else:
         splits = [replace(split, added=tuple(range(first, len(corpus))))
                   for split in make_splits(corpus[:first], options.splits, options.seed, options.held_out)]
-    if folder is None:
-        with Workers(jobs, progress, engine) as workers:
-            return workers.run("splits", _run, [(corpus, split, options) for split in splits])
-    kept = Kept(folder, corpus, options)
-    found = {split.number: outcome for split in splits for outcome in [kept.find(split)] if outcome is not None}
+    kept = Kept(folder, corpus, options) if folder else None
+    found = {split.number: outcome for split in splits if kept and (outcome := kept.find(split))}
     if found:
         print(f"{folder}: {len(found)} of {len(splits)} splits were finished before")
     left = [split for split in splits if split.number not in found]
     with Workers(jobs, progress, engine) as workers:
-        new = workers.run("splits", _run, [(corpus, split, options) for split in left], kept.keep)
+        new = workers.run("splits", _run, [(corpus, split, options) for split in left], kept.keep if kept else None)
     return sorted([*found.values(), *new], key=lambda outcome: outcome.split.number)

@@ -40,11 +40,9 @@ from labial.evaluate.training import Training
 #: Sampling of a word: moments, and seconds beyond it to both sides.
 POINTS = 20
 MARGIN = 0.1
-
 #: Least tokens of a word to be learned, and the number of parts of the test part for unseen words.
 LEAST = 5
 FOLDS = 10
-
 #: Readings of each token with a residual.
 REPEATS = 5
 

@@ -20,9 +20,8 @@ import numpy as np
 from labial.corpus.corpora import read_corpus
 from labial.corpus.episode import Episode
 from labial.corpus.formats import SOUNDS
-from labial.corpus.timings import PathLike
-from labial.errors import DataError, needs
-from labial.evaluate.loudness import loudness_of
+from labial.errors import DataError, PathLike, needs
+from labial.evaluate.hearing import loudness_of
 from labial.files.arrays import ArrayError, array, read_zip
 from labial.files.faps import FAP_NUMBERS
 from labial.files.frames import opening, sampled
@@ -31,7 +30,7 @@ from labial.hearing.features import BANDS, FLOOR, FRAME, HOPS, log_energies
 from labial.hearing.measures import RATE
 from labial.hearing.model import CLASSES, HearingModel
 from labial.hearing.quantise import quantise
-from labial.runtime.mixing import with_sound
+from labial.runtime.hearing import with_sound
 
 #: The file of log energies, and the most bytes that it may have, unpacked: some hours.
 ENERGIES, LARGEST = "energies.npz", 128_000_000

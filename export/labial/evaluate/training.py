@@ -19,7 +19,6 @@ from labial.train.codebook import lbg
 
 #: Share of the training part that inner validation fits on; the rest chooses the settings.
 INNER_SHARE = 0.8
-
 #: If unseen words are judged, inner validation holds out words, too, in several folds, since few words are not enough:
 #: in each fold until so many episodes contain one of them. It does not hold out words in more episodes than
 #: COMMON_SHARE, which would leave too little to fit on.
@@ -45,10 +44,9 @@ class Training:
     methods have no weights.
     """
 
-    def __init__(
-        self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int, unseen_words: bool = False,
-        added: Sequence[Episode] = (), talker_variance: Optional[float] = None,
-    ) -> None:
+    def __init__(self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int,
+                 unseen_words: bool = False, added: Sequence[Episode] = (),
+                 talker_variance: Optional[float] = None) -> None:
         self.added = list(added)
         self.talker_variance = talker_variance
         self.unseen_words = unseen_words
@@ -119,15 +117,9 @@ class Training:
         if key not in self._models:
             self._models[key] = train(
                 [*(item.episode for item in self.utterances), *(self.added if method == "labial" else ())],
-                kind=self.phone_set.kind,
-                method=method,
-                fps=self.fps,
-                seed=self.seed,
-                jobs=1,
-                progress=False,
-                divide=self.divide,
-                normalise=normalise,
-                talker_variance=self.talker_variance if method == "labial" else None,
+                kind=self.phone_set.kind, method=method, fps=self.fps, seed=self.seed, jobs=1, progress=False,
+                divide=self.divide, normalise=normalise,
+                talker_variance=self.talker_variance if method == "labial" else None
             )
         return self._models[key]
 
@@ -163,11 +155,8 @@ def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.
     return float(mean_difference(scale, human, motion).mean())
 
 
-def choose(
-    training: Training,
-    settings: Sequence[Setting],
-    prepare: Callable[[Training], Callable[[Setting], Callable[[Timeline], np.ndarray]]],
-) -> Setting:
+def choose(training: Training, settings: Sequence[Setting],
+           prepare: Callable[[Training], Callable[[Setting], Callable[[Timeline], np.ndarray]]]) -> Setting:
     """The setting of least error over the folds of inner validation, the first of equals.
 
     `prepare` takes the part to fit on and returns what makes a prediction function of a setting.

@@ -15,11 +15,9 @@ from typing import Any, BinaryIO, ContextManager, Dict, Iterable, Mapping, Optio
 
 import numpy as np
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files import limits
 from labial.files.outputs import writing
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Most bytes of an array's header, and most axes.
 _LONGEST_HEADER = 10_000

@@ -18,7 +18,6 @@ _OVERSAMPLING = 16
 _ROUNDING = 0.0015
 #: Columns of a frame: how far the upper lip is lowered, and the lower one raised.
 _UPPER, _LOWER = FAP_NUMBERS.index(51), FAP_NUMBERS.index(52)
-
 #: The first line of a frames file.
 CSV_HEAD = ",".join(("time", *FAP_COLUMNS)) + "\n"
 

@@ -17,12 +17,10 @@ import functools
 import math
 import os
 import re
-from typing import Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Iterator, List, Optional, Sequence, Tuple
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Bytes that are read at once.
 _PART = 1_000_000
@@ -63,9 +61,9 @@ def read_bytes(path: PathLike, most: int = limits.TEXT) -> bytes:
     return bytes(data)
 
 
-def read_text(path: PathLike, most: int = limits.TEXT) -> str:
+def read_text(path: PathLike) -> str:
     """A file's text without its byte order mark. Raises DataError, which names the line of an invalid character."""
-    data = read_bytes(path, most)
+    data = read_bytes(path)
     encoding = "utf-16" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else "utf-8-sig"
     try:
         text = data.decode(encoding)
@@ -138,9 +136,9 @@ def number(path: PathLike, line: Optional[int], text: str, what: str = "value") 
     return value
 
 
-def number_or_nan(path: PathLike, line: Optional[int], text: str, what: str = "value") -> float:
+def number_or_nan(path: PathLike, line: Optional[int], text: str) -> float:
     """Like :func:`number`, but NaN for ``nan`` in any case and for an empty field: a missing measurement."""
-    return math.nan if not text or text.lower() == "nan" else number(path, line, text, what)
+    return math.nan if not text or text.lower() == "nan" else number(path, line, text)
 
 
 def shown(text: str) -> str:

@@ -8,17 +8,13 @@ by kind of file.
 from __future__ import annotations
 
 import os
-from typing import Union
 
-from labial.errors import DataError
-
-PathLike = Union[str, os.PathLike[str]]
+from labial.errors import DataError, PathLike
 
 #: Most bytes of a text file: timings, frames, tables; of a TOML file; of a binary model for the run-time.
 TEXT = 256_000_000
 TOML = 1_000_000
 BLOB = 64_000_000
-
 #: Most bytes of what an archive (.npz, .zip) holds, unpacked: of a model, of tables of words, of a model of hearing, of
 #: landmarks, of a corpus's files.
 MODEL = 64_000_000
@@ -29,7 +25,6 @@ CORPUS = 512_000_000
 #: An archive holds at most `SPARE` bytes and `RATIO` bytes per byte of its file. Frames and models are at most a tenth
 #: of their size when packed; a file of zeros is a thousandth.
 SPARE, RATIO = 16_000_000, 20
-
 #: Most bytes of an avatar's file, its buffers included, and of what its accessors have unpacked, as floats and vertex
 #: numbers of 4 bytes, each as often as it is used.
 AVATAR = 256_000_000
@@ -41,10 +36,8 @@ AVATAR_NODES, AVATAR_LEVELS, AVATAR_MESHES = 20_000, 200, 200
 AVATAR_SHAPES, AVATAR_VERTICES, AVATAR_TRIANGLES = 1_000, 1_000_000, 500_000
 #: Largest coordinate of a vertex, in the file's unit.
 AVATAR_COORDINATE = 1e6
-
 #: Most outputs of a rig, and of one that is drawn.
 OUTPUTS, DRAWN = 256, 64
-
 #: Most bytes of a sound, or of an avatar, in a page: there it is a third longer, and Firefox stops at 32 MB.
 PAGE = 24_000_000
 #: Most bytes of a sound's samples, of 16 bits or floats: hours. A sound has at most `SPARE` bytes of them, and
@@ -54,7 +47,6 @@ SOUND, SOUND_RATIO = 1_000_000_000, 100
 SOUND_RATES, SOUND_CHANNELS = (1_000, 768_000), 64
 #: Largest sample of a sound of floats; full scale is 1.
 SOUND_PEAK = 1e6
-
 #: Of a service's message: levels of lists and objects, documents in it, items that it times, fields of an object of a
 #: client library; characters of a text, also of one that `labial say` says. The services' table has the same limits for
 #: JavaScript.

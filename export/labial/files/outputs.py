@@ -17,16 +17,14 @@ import stat
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import IO, Any, Callable, Iterator, List, Optional, Union
+from typing import IO, Any, Callable, Iterator, List, Optional
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 
 try:
     import fcntl
 except ImportError:  # Windows, where nothing is removed
     fcntl = None  # type: ignore[assignment]
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Names of temporary files and folders: a dot, the target's name, random letters, this suffix.
 SUFFIX = ".part"
@@ -131,10 +129,17 @@ def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
                 item.rmdir()
 
 
-def check(path: Optional[PathLike]) -> None:
-    """Raises LabialError unless a file can be written at `path`; call it before the work. None is standard output."""
+def check(path: Optional[PathLike], *suffixes: str) -> None:
+    """Raises LabialError unless a file can be written at `path`, whose name ends in one of `suffixes` if there are any;
+    call it before the work. None is standard output."""
     if path is None:
         return
+    _check_target(path)
+    if suffixes:
+        check_suffix(path, *suffixes)
+
+
+def _check_target(path: PathLike) -> None:
     with _named(path):
         target = _resolved(path)
         if target is None:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import difflib
 import math
-import os
 import re
 import sys
-from typing import Any, Dict, Iterable, List, Mapping, Union
+from typing import Any, Dict, Iterable, List, Mapping
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 from labial.files.grammar import read_bytes
 
@@ -27,7 +26,7 @@ _TEXTS = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'|#[^\n]*')
 class Table:
     """A table of a file: `content` by key. Only `known` keys are allowed; errors write `prefix` before a key."""
 
-    def __init__(self, path: Union[str, os.PathLike[str]], prefix: str, content: Mapping[str, Any],
+    def __init__(self, path: PathLike, prefix: str, content: Mapping[str, Any],
                  known: Iterable[str]) -> None:
         self.path, self.prefix, self.content = path, prefix, content
         known = list(known)
@@ -73,7 +72,7 @@ def meant(name: str, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
-def read_toml(path: Union[str, os.PathLike[str]]) -> Dict[str, Any]:
+def read_toml(path: PathLike) -> Dict[str, Any]:
     """The content of a TOML file. Raises DataError, which names the file and the line, for invalid TOML."""
     try:
         text = read_bytes(path, limits.TOML).decode("utf-8-sig")

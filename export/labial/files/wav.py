@@ -12,8 +12,6 @@ from labial.errors import DataError
 ERRORS = (wave.Error, EOFError, RuntimeError)
 #: Samples of each channel that are read at once.
 _BLOCK = 65_536
-
-
 #: Bytes that tell a WAV file.
 HEAD = 12
 #: Bytes, from which on a head says that whoever wrote it did not know their number; others write 0. And samples.

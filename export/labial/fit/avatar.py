@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 from labial.fit.gltf import Gltf, objects
 
@@ -33,7 +33,7 @@ class Mesh:
     parts: Mapping[str, Sequence[Tuple[str, float]]] = field(default_factory=dict)
 
 
-def read(path: Union[str, os.PathLike[str]], everything: bool = False) -> List[Mesh]:
+def read(path: PathLike, everything: bool = False) -> List[Mesh]:
     """The meshes of a file that have shapes, each once, at the first node that has it. A .vrm file's expressions aa,
     ih, ou, ee, oh are shapes of the mesh that they move, beside the mesh's own.
 

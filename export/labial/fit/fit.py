@@ -13,13 +13,11 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.fit.avatar import read as read_avatar
-from labial.fit.head import Head, read_table
+from labial.fit.head import Head, own, read_table
 from labial.fit.kinds import KINDS, kind_of, prepare, unknown
 from labial.fit.landmarks import Found, read_head
 from labial.fit.meaning import crooked, judge, matrix
-from labial.fit.names import own
-from labial.fit.sentences import read_sentences
-from labial.fit.solve import FEATURES, Solution, solve
+from labial.fit.solve import FEATURES, Solution, read_sentences, solve
 from labial.program import one_line
 from labial.rig.animation import outputs
 from labial.rig.description import SOURCES, Rig, make_unit, read
@@ -137,8 +135,6 @@ _CORNERS = {"left": ("stretch_l_cornerlip_o", "raise_l_cornerlip_o"),
             "right": ("stretch_r_cornerlip_o", "raise_r_cornerlip_o")}
 #: Coefficients of an output below this share of its largest are omitted.
 _LEAST = 0.002
-
-
 #: Most letters of an output's name, and names that a description refuses, in capitals.
 _LONGEST, _REFUSED = 32, ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE")
 

@@ -11,18 +11,16 @@ import base64
 import binascii
 import json
 import math
-import os
 import struct
 from itertools import chain
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, NoReturn, Optional, Tuple, Union
+from typing import Any, Dict, Iterator, List, NoReturn, Optional, Tuple
 
 import numpy as np
 
+from labial.errors import PathLike
 from labial.files import limits
 from labial.files.grammar import read_bytes
-
-PathLike = Union[str, os.PathLike[str]]
 
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _SIZES = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}

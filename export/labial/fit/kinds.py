@@ -14,8 +14,7 @@ from typing import Dict, Iterator, List, Mapping, NamedTuple, Sequence, Tuple
 import numpy as np
 
 from labial.errors import LabialError
-from labial.fit.head import Head
-from labial.fit.names import of_head, plain, sided
+from labial.fit.head import Head, of_head, plain, sided
 from labial.fit.solve import FEATURES, Wishes
 from labial.rig.animation import LIVE_LINK
 from labial.tables.visemes import VISEMES

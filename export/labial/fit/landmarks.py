@@ -14,8 +14,7 @@ import numpy as np
 from labial.errors import DataError
 from labial.files import limits
 from labial.fit.avatar import Mesh
-from labial.fit.head import NEEDED, POINTS, USUAL_MNS, Head, from_points
-from labial.fit.names import plain
+from labial.fit.head import NEEDED, POINTS, USUAL_MNS, Head, from_points, plain
 
 #: Shapes that open the mouth, the plainest first; compared without case, prefixes and punctuation.
 _OPENERS = ("jawopen", "visemeaa", "fclmtha", "aa", "mouthopen", "a", "open")

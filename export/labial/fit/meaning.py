@@ -15,7 +15,6 @@ from labial.files.faps import FAP_NUMBERS
 from labial.fit.head import Head
 
 _COLUMN = {number: place for place, number in enumerate(FAP_NUMBERS)}
-
 #: Millimetres by which outer lips are apart when inner ones meet, and from which opening on both open alike.
 _LIFT, _ALIKE = 1.0, 8.0
 

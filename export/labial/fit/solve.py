@@ -13,25 +13,102 @@ The problem is not convex, and a descent from zero stalls. So the solver first f
 separately (accelerated projected gradient), then the rig nearest to them, and repeats both with a growing penalty on
 their difference. Then it optimises the rig alone (L-BFGS) with a softened corner at 0, and finally removes the least
 useful coefficients, one at a time.
+
+Rigs are solved for, and judged on, sentences as motion: ``sentences.flite`` are 24 English sentences as flite times
+them (``flite -voice VOICE -t SENTENCE -psdur -o none``), in turn by its voices kal, slt and rms: each phoneme with the
+second at which it ends.
 """
 
 from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.fit.head import Head
+from labial.errors import DataError, PathLike
+from labial.fit.head import Head, Pair, by_names
 from labial.fit.meaning import fap, rows
-from labial.fit.names import Pair, by_names
-from labial.fit.sentences import Motion
+from labial.runtime.render import render
+from labial.runtime.stream import Stream
+from labial.tables.visemes import ONE, VISEMES
+
+#: The bundled sentences.
+SENTENCES = Path(__file__).with_name("sentences.flite")
+_FPS = 50
+#: Seconds that a closure may be early or late.
+_AROUND = 0.02
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Frames, and which phonemes they are of."""
+
+    frames: np.ndarray  #: (T, 13) FAP units
+    phonemes: Sequence[Tuple[str, int, int]]  #: label, first frame and end, a frame wider than spoken on either side
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds in each frame, 0 .. 1; None where they are not known
+
+    @property
+    def closures(self) -> List[Tuple[int, int]]:
+        """First frame and end of each p, b, m."""
+        return [(begin, end) for label, begin, end in self.phonemes if label in ("p", "b", "m")]
+
+    @property
+    def contact(self) -> np.ndarray:
+        """(T,) bool: the frame of each closure in which the lips are nearest."""
+        found = np.zeros(len(self.frames), dtype=bool)
+        opening = -(fap(self.frames, 51) + fap(self.frames, 52))
+        for begin, end in self.closures:
+            found[begin + int(np.argmin(opening[begin:end]))] = True
+        return found
+
+
+def read_sentences(path: PathLike = SENTENCES, laughs: Sequence[float] = ()) -> Motion:
+    """The motion of a file of sentences, one a line, with the bundled English model; after them laughs of these
+    intensities, two seconds each. Raises DataError naming file and line."""
+    parts: List[np.ndarray] = []
+    shares: List[np.ndarray] = []
+    phonemes: List[Tuple[str, int, int]] = []
+    first = 0
+    for number, line in enumerate(Path(path).read_text(encoding="ascii").splitlines(), 1):
+        timings: List[Tuple[str, float, float]] = []
+        begin = 0.0
+        for item in line.split():
+            label, _, last = item.partition(":")
+            try:
+                timings.append((label, begin, float(last)))
+            except ValueError:
+                raise DataError(os.fspath(path), number, f"{item!r} is not LABEL:SECONDS") from None
+            begin = timings[-1][2]
+        if not timings:
+            continue
+        lengths = [(label, round(1000.0 * (end - begin))) for label, begin, end in timings]
+        with Stream(exact=True) as stream:
+            for label, milliseconds in lengths:
+                stream.push(label, milliseconds)
+            stream.end()
+            spoken = list(stream)
+        frames = np.array([frame.faps for frame in spoken])
+        shares.append(np.array([frame.visemes for frame in spoken]) / ONE)
+        for label, start, end in timings:
+            phonemes.append((label, first + max(int((start - _AROUND) * _FPS), 0),
+                             first + min(int((end + _AROUND) * _FPS) + 1, len(frames))))
+        parts.append(frames)
+        first += len(frames)
+    for intensity in laughs:
+        parts.append(np.asarray(render([(f"<laugh:{intensity:g}>", 2000), ("SIL", 200)], exact=True)))
+        shares.append(np.eye(len(VISEMES))[np.zeros(len(parts[-1]), dtype=int)])  # silence, the first one
+    return Motion(np.concatenate(parts).astype(np.float64), phonemes, np.concatenate(shares))
+
 
 #: What an output may follow, in the names of a description; per side, with left and right alike.
 FEATURES: Tuple[str, ...] = ("jaw", "push_b_lip", "push_t_lip", "upper_lip", "lower_lip", "spread", "corner")
 #: Their spread in speech, FAP units / 1024: coefficients are compared after this.
 _SPREAD = np.array([0.10, 0.06, 0.04, 0.05, 0.13, 0.02, 0.05])
+#: Width of the corner at 0 that is rounded while the rig is optimised.
+_SOFT = 0.004
 
 
 @dataclass(frozen=True)
@@ -223,8 +300,8 @@ class Problem:
             slopes[number, use], offsets[number] = guess[:-1] / scale, min(guess[-1], 0.0)
 
 
-def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray, steps: int,
-             soft: float = 0.004) -> Tuple[np.ndarray, np.ndarray, float]:
+def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray,
+             steps: int) -> Tuple[np.ndarray, np.ndarray, float]:
     """Optimises the rig from here on, with only the `live` (G, F) coefficients."""
     from scipy.optimize import minimize
 
@@ -238,7 +315,7 @@ def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np
 
     def cost(packed: np.ndarray) -> Tuple[float, np.ndarray]:
         a, b = unpack(packed)
-        weights, slope = problem.weights(a, b, soft)
+        weights, slope = problem.weights(a, b, _SOFT)
         total, by_weight = problem.loss(weights)
         by_weight *= slope
         by_a, by_b = np.zeros(live.shape), np.zeros(len(b))

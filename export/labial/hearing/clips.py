@@ -22,8 +22,8 @@ from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Sequenc
 from labial.corpus.episode import Segment
 from labial.corpus.formats import SOUNDS, read_timings, suffixes
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike, phoneme_segments
-from labial.errors import DataError, LabialError, needs
+from labial.corpus.timings import phoneme_segments
+from labial.errors import DataError, LabialError, PathLike, needs
 from labial.files.grammar import read_text
 from labial.files.outputs import writing
 
@@ -116,9 +116,8 @@ def _table(path: Path) -> Dict[str, Told]:
     return found
 
 
-def read(
-    folder: PathLike, cache: PathLike, jobs: int = 1, told: Optional[Callable[[int, int], None]] = None
-) -> List[Clip]:
+def read(folder: PathLike, cache: PathLike, jobs: int = 1,
+         told: Optional[Callable[[int, int], None]] = None) -> List[Clip]:
     """The clips of a folder; texts are aligned in `jobs` processes, results are kept in the folder `cache`.
 
     Sounds that their text does not fit, and texts that are not English words, are left out with a warning. `told`
@@ -172,7 +171,7 @@ def _aligned(rows: Sequence[_Row], jobs: int) -> Iterable[str]:
 def _align(row: _Row) -> str:
     """Aligns a sound and keeps the result, an empty file if the text does not fit; returns the problem, or ""."""
     from labial.sound.align import aligned
-    from labial.sound.confidence import LOW
+    from labial.sound.recogniser import LOW
 
     sound, item, kept = row
     problem, lab = "", ""

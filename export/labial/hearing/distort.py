@@ -18,8 +18,6 @@ from labial.hearing.features import BANDS, FLOOR, HIGHEST, LOWEST, RATE, log_ene
 PEAKS = (-45.0, 0.0)
 #: How many times as fast a sound is.
 SPEEDS = (0.85, 1.2)
-
-
 #: Codecs of telephones, radios, calls and the web, as libsndfile has them: format, subtype, samples per second, and how
 #: hard it compresses, 0 .. 1.
 CODECS: Dict[str, Tuple[str, str, int, float]] = {
@@ -27,7 +25,6 @@ CODECS: Dict[str, Tuple[str, str, int, float]] = {
     "g726": ("AU", "G723_24", 8000, 0.0), "opus": ("OGG", "OPUS", 16000, 1.0),
     "vorbis": ("OGG", "VORBIS", 16000, 1.0), "mp3": ("MP3", "MPEG_LAYER_III", 16000, 0.95),
 }  # fmt: skip
-
 #: Share of the crops whose bands are warped, from and to which factor: voices of other sizes.
 WARPED, WARPS = 0.6, (0.87, 1.15)
 #: Share of the crops under noise, and its ratio to the speech, dB.
@@ -36,7 +33,6 @@ NOISY, RATIOS = 0.85, (0.0, 48.0)
 DROPPED, CUT = 0.25, 0.1
 #: Octaves of level in the three waves of a random equaliser, and of gain.
 _EQUALISER, _GAIN = 1.2, 2.0
-
 #: Mels of the bands' peaks, and their octaves relative to the lowest.
 _PEAKS = np.linspace(mel(np.array(LOWEST)), mel(np.array(HIGHEST)), BANDS + 2)[1:-1]
 _OCTAVES = np.log2(700.0 * np.expm1(_PEAKS / 1127.0) / (700.0 * np.expm1(_PEAKS[0] / 1127.0)))

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
-from typing import Iterable, List, Sequence, Tuple, Union
+from typing import Iterable, List, Sequence, Tuple
 
 import numpy as np
 
 from labial import __version__
-from labial.errors import ModelError
+from labial.errors import ModelError, PathLike
 from labial.files.c import block_comment, check_name, constants_of, rows
 from labial.files.outputs import folder, writing
 from labial.hearing import integer
@@ -63,7 +62,7 @@ def convert_table() -> str:
     ]))
 
 
-def write_tables(directory: Union[str, os.PathLike[str]]) -> None:
+def write_tables(directory: PathLike) -> None:
     """Writes both headers into `directory`, which is lib."""
     for name, text in (("hear_features_table.h", features_table()), ("hear_convert_table.h", convert_table())):
         with writing(Path(directory) / name, "ascii") as out:
@@ -212,7 +211,7 @@ def _quoted(names: Sequence[str]) -> List[str]:
     return [f'"{name}"' for name in names]
 
 
-def write(tables: HearingTables, directory: Union[str, os.PathLike[str]]) -> List[Path]:
+def write(tables: HearingTables, directory: PathLike) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths."""
     check_name(tables.name)
     check_limits(tables)

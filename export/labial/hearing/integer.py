@@ -43,7 +43,6 @@ FIRST_BIN, LAST_BIN = 2, 121
 BEGIN, _NONE = round(LEVEL_BEGIN * LEVEL_ONE), 64 * LEVEL_ONE
 #: Points of the transform: pairs of samples.
 COUNT = WINDOW // 2
-
 #: The largest difference of samples in silence, the silent frames before a frame that rests, and frames to rest.
 SILENT, SILENT_BEFORE, RESTING = 32, 2, 5
 
@@ -263,10 +262,10 @@ class _Told(NamedTuple):
     level: int  #: after the last frame and what the network looks ahead, in 1 / `LEVEL_ONE`
 
 
-def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> Heard:
+def hear(tables: HearingTables, sound: np.ndarray, rate: int = 16000) -> Heard:
     """Scores (T, C) and (T,) in Q9 and FAPs (T, 13), int64, of a sound (N,) or (N, 2) of int16 at `rate`, to its end:
-    what the network tells, under way, from the level `begin` on."""
-    return _of_sound(tables, sound, rate, begin).heard
+    what the network tells, under way, from the level `BEGIN` on."""
+    return _of_sound(tables, sound, rate, BEGIN).heard
 
 
 def hear_energies(tables: HearingTables, energies: np.ndarray, count: int) -> Heard:
@@ -341,9 +340,9 @@ def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: 
     return result
 
 
-def level_after(tables: HearingTables, sound: np.ndarray, rate: int = 16000, begin: int = BEGIN) -> int:
+def level_after(tables: HearingTables, sound: np.ndarray, begin: int = BEGIN) -> int:
     """The level, in 1 / `LEVEL_ONE`, when a stream has delivered a sound: that with which the next one begins."""
-    return _of_sound(tables, sound, rate, begin).level
+    return _of_sound(tables, sound, 16000, begin).level
 
 
 def _silent_hops(samples: np.ndarray) -> np.ndarray:

@@ -32,7 +32,6 @@ REACH = 2
 RATE = 50
 
 _SILENCE, _CLOSED = CLASSES.index("SIL"), CLASSES.index(CLOSED)
-
 #: Scores of closed lips at which they begin to close, and by how much more they are closed, to choose from.
 _BEGIN = (-3.0, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0)
 _WIDTH = (0.8, 1.5, 2.5, 3.5)

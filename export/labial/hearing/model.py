@@ -14,20 +14,17 @@ from typing import Any, BinaryIO, Dict, List, NamedTuple, Tuple, Union
 
 import numpy as np
 
-from labial.errors import ModelError, expect
+from labial.errors import ModelError, PathLike, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS, SIDES
 from labial.hearing.features import BANDS, HOPS
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Version of the .npz layout, and what tells such a file from a model of speech or laughter.
 FORMAT = 2
 KIND = "hearing"
 #: Features of a frame.
 INPUTS = HOPS * BANDS
-
 #: Limits of `lib/hear_network.c`, the first where it is built for it: units, a multiple of four; blocks; frames that a
 #: memory reaches back and ahead, times its dilation; classes.
 UNITS_MAX, BLOCKS_MAX, REACH_MAX, CLASSES_MAX = 252, 8, 64, 64
@@ -70,7 +67,6 @@ PLANS: Dict[str, Plan] = {
     "host": Plan(192, (Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1), Memory(5, 1, 1))),
     "ahead": Plan(192, (Memory(5, 3, 1), Memory(5, 3, 1), Memory(5, 3, 1), Memory(5, 3, 1))),
 }
-
 #: The lip classes, each named by the ARPABET phoneme that stands for it.
 CLASSES = ("SIL", "M", "F", "TH", "T", "L", "S", "SH", "K", "HH", "R", "ER", "W", "IY", "IH", "EH", "AE", "AH", "AA",
            "AO", "OW", "UW", "UH", "AY", "AW", "EY")

@@ -26,8 +26,7 @@ import numpy as np
 
 from labial.corpus.episode import Segment
 from labial.corpus.phonesets import SPEECH
-from labial.corpus.timings import PathLike
-from labial.errors import needs
+from labial.errors import PathLike, needs
 from labial.files.faps import CHANNELS
 from labial.files.outputs import writing
 from labial.hearing import targets
@@ -43,7 +42,6 @@ _VERSION = 3
 HELD_OUT = 20
 #: Seconds of silence before and after a clip.
 _PAUSE = (0.05, 0.6)
-
 #: How often frames count for the score of closed lips: others in speech once; those of p, b, m; of n, t, d, f and v,
 #: which are taken for them; of p, b, m next to silence; of silence, where the face rests anyway.
 _PRESSED, _RIVALS, _EDGES, _SILENCE = 4.0, 2.5, 8.0, 0.3
@@ -74,10 +72,8 @@ def is_held(sound: PathLike) -> bool:
     return zlib.crc32(Path(sound).stem.encode("utf-8")) % HELD_OUT == 0
 
 
-def prepare(
-    clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs: int = 1,
-    told: Optional[Callable[[int, int], None]] = None,
-) -> Prepared:
+def prepare(clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs: int = 1,
+            told: Optional[Callable[[int, int], None]] = None) -> Prepared:
     """`takes` of each of `clips`, from the folder `cache` if they were prepared before. `told` receives how many clips
     are done, and how many there are. Raises DataError for a sound that cannot be read."""
     path = os.path.join(cache, f"{_key(clips, takes, seed)}.npz")
@@ -128,9 +124,8 @@ def prepare_clip(clip: Clip, takes: int, seed: int) -> List[_Take]:
     return found
 
 
-def with_pauses(
-    samples: np.ndarray, segments: Sequence[Segment], before: float, after: float
-) -> Tuple[np.ndarray, List[Segment]]:
+def with_pauses(samples: np.ndarray, segments: Sequence[Segment], before: float,
+                after: float) -> Tuple[np.ndarray, List[Segment]]:
     """A sound between digital silence of `before` and `after` seconds, and its segments."""
     lead, tail = round(before * RATE), round(after * RATE)
     shift = lead / RATE

@@ -17,7 +17,6 @@ from labial.runtime.voice import Voice
 from labial.tables.visemes import ONE, VISEMES
 
 _logger = logging.getLogger("labial")
-
 #: From words to sound, and back, from sound to sound and to rest, lips fade over so many frames.
 _FADE = 8
 #: Lips that are apart meet for a p, b or m in so many frames, where a fade would take longer.

@@ -22,25 +22,15 @@ FRAMES = CONTACT_FRAMES
 LONG = 15
 LAST = 8
 REST = 16
-
 #: Farther than contacts are looked for, frames.
 FAR = 2 * FRAMES
-
 #: (13,) FAP, by how much lips part between two contacts: half a standard deviation of the lips in speech.
 PARTED = np.array([{51: 28, 52: 100, 55: 25, 56: 25, 57: 86, 58: 86}.get(number, 0) for number in FAP_NUMBERS])
 
 
-def raised(
-    target: np.ndarray,
-    labels: np.ndarray,
-    length: np.ndarray,
-    rest: np.ndarray,
-    silence: int,
-    floor: np.ndarray,
-    contact: np.ndarray,
-    begin: int = 0,
-    parted: np.ndarray = PARTED,
-) -> Tuple[np.ndarray, np.ndarray]:
+def raised(target: np.ndarray, labels: np.ndarray, length: np.ndarray, rest: np.ndarray, silence: int,
+           floor: np.ndarray, contact: np.ndarray, begin: int = 0,
+           parted: np.ndarray = PARTED) -> Tuple[np.ndarray, np.ndarray]:
     """Targets (N, C) that keep the floors, and where they are in contact, (N, C) bool; they are those of N frames
     from frame `begin` on.
 

@@ -33,9 +33,7 @@ def closing_steps(held: np.ndarray, contact: np.ndarray) -> int:
     return FADE + 1 if -rounded(held)[3:5].sum() <= CLOSED or not len(touching) else int(touching[0]) + 2
 
 
-def faded(
-    held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, closing: int = FADE + 1
-) -> np.ndarray:
+def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0, closing: int = FADE + 1) -> np.ndarray:
     """(T, 13): frames `fresh` (T, 13) of motion that began anew `step` frames before. The first FADE fade in from the
     pose `held` (13,), which goes on as far as its last frame `moved` it (13,), half as far with each frame; jaw and
     lips arrive with step `closing`."""

@@ -14,14 +14,14 @@ often open, and cackles more frequent; towards 0 it is the other way round and m
 from __future__ import annotations
 
 import math
-import os
 import textwrap
 from statistics import NormalDist
-from typing import Iterator, List, Sequence, Tuple, Union
+from typing import Iterator, List, Sequence, Tuple
 
 from labial.corpus import laughter
 from labial.corpus.laughter import PERIOD_LONGEST, PERIOD_SHORTEST, PULSES, SHORTEST, TRAIN_LONGEST, VOWELS
 from labial.corpus.phonesets import LAUGHTER, LAUGHTER_GRADES
+from labial.errors import PathLike
 from labial.files.outputs import writing
 
 #: Intensity of the heartiest laugh.
@@ -276,7 +276,7 @@ def table_header() -> str:
     return "".join(parts)
 
 
-def write_table(path: Union[str, os.PathLike[str]]) -> None:
+def write_table(path: PathLike) -> None:
     """Writes lib/laugh_table.h."""
     with writing(path, "ascii") as out:
         out.write(table_header())

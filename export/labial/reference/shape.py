@@ -38,15 +38,8 @@ class Choice:
     offset: np.ndarray  #: (S, K) seconds from the component's mean duration, at most SLOPE_LIMIT deviations
 
 
-def choose(
-    mixtures: Union[ShapeTables, Model],
-    phoneme: np.ndarray,
-    duration: np.ndarray,
-    previous: np.ndarray,
-    following: np.ndarray,
-    *,
-    soft: bool,
-) -> Choice:
+def choose(mixtures: Union[ShapeTables, Model], phoneme: np.ndarray, duration: np.ndarray, previous: np.ndarray,
+           following: np.ndarray, *, soft: bool) -> Choice:
     """Equation 2 for (S,) phonemes with durations in seconds and neighbours' viseme classes: the best component alone,
     or with `soft` all by their probability."""
     first = np.concatenate([[0], np.cumsum(mixtures.component_count)])
@@ -79,9 +72,8 @@ def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarra
     return padded[:-2], padded[2:]
 
 
-def pairs_beside(
-    key: np.ndarray, shape: np.ndarray, phoneme: np.ndarray, previous: np.ndarray, following: np.ndarray
-) -> np.ndarray:
+def pairs_beside(key: np.ndarray, shape: np.ndarray, phoneme: np.ndarray, previous: np.ndarray,
+                 following: np.ndarray) -> np.ndarray:
     """(S, K, C) FAP: what the neighbours of (S,) phonemes add to their shapes, from pairs `key` (R, 3), phoneme, side
     and neighbour, with shapes (R, K, C)."""
     rows = {tuple(each): row for row, each in enumerate(key.tolist())}
@@ -93,9 +85,8 @@ def pairs_beside(
     return added
 
 
-def add_kernels(
-    shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray, silence: int
-) -> np.ndarray:
+def add_kernels(shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray, lag: np.ndarray,
+                silence: int) -> np.ndarray:
     """(T, C) the moving target: the frames' shapes (T, C) plus their neighbours' kernels (P, L, C), FAP."""
     if not len(lag):
         return shape_at

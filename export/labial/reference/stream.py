@@ -21,7 +21,6 @@ from labial.tables.fixed import SEARCHED
 
 #: Frames that are computed at once, some 10 KB each.
 PART = 3000
-
 #: Percent by which the articulation changes from frame to frame, at most.
 SLEW = 10
 
@@ -35,16 +34,8 @@ def check(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> None:
             raise LabialError(f"phoneme {tables.phonemes[number]}: {milliseconds} ms is not within 0 .. {DURATION_MAX}")
 
 
-def synthesise(
-    tables: Tables,
-    phonemes: Sequence[Tuple[int, int]],
-    *,
-    articulation: Union[int, Sequence[int]] = 100,
-    whole: bool = False,
-    window: int = WINDOW,
-    lag: int = LAG,
-    searched: int = SEARCHED,
-) -> np.ndarray:
+def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, articulation: Union[int, Sequence[int]] = 100,
+               whole: bool = False, window: int = WINDOW, lag: int = LAG, searched: int = SEARCHED) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     `articulation` is what the stream is told, in percent, throughout or when each of T frames is taken in. `window` is
@@ -73,9 +64,8 @@ def gains(articulation: np.ndarray, stride: int, lag: int = LAG, channels: int =
     return result
 
 
-def in_parts(
-    tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int = PART, articulation: int = 100
-) -> Iterator[np.ndarray]:
+def in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int = PART,
+             articulation: int = 100) -> Iterator[np.ndarray]:
     """The motion of :func:`synthesise`, bit for bit, some `part` frames (n, 13) at a time: memory does not grow with
     the stream."""
     channels = len(tables.solved)
@@ -92,9 +82,8 @@ def in_parts(
             yield tables.complete(solve.take(terms, last))
 
 
-def aims_in_parts(
-    tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int
-) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
+def aims_in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]],
+                  part: int) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
     """The result of :func:`aims`, some `part` frames at a time, and whether these are the last.
 
     A part is made of some phonemes and of those around them that its targets depend on.
@@ -129,22 +118,15 @@ def _until(counts: Sequence[int], begin: int, least: int) -> Tuple[int, int]:
     return end, frames
 
 
-def targets(
-    tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]
-) -> np.ndarray:
+def targets(tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int]) -> np.ndarray:
     """(T, 13) the moving target of an utterance, in the tables' positions; phonemes without frames have no effect,
     silence is before and after."""
     return targets_and_contact(tables, phonemes, milliseconds, frames)[0]
 
 
-def targets_and_contact(
-    tables: Tables,
-    phonemes: Sequence[int],
-    milliseconds: Sequence[int],
-    frames: Sequence[int],
-    rest: Optional[np.ndarray] = None,
-    here: Optional[slice] = None,
-) -> Tuple[np.ndarray, np.ndarray]:
+def targets_and_contact(tables: Tables, phonemes: Sequence[int], milliseconds: Sequence[int], frames: Sequence[int],
+                        rest: Optional[np.ndarray] = None,
+                        here: Optional[slice] = None) -> Tuple[np.ndarray, np.ndarray]:
     """The targets (T, 13) of :func:`targets`, and where they are in contact, (T, 13) bool; `rest` (T,) is how far the
     mouth has come to rest in pauses. Of all T frames, or of those `here` alone."""
     length = np.asarray(frames, dtype=np.int64)
@@ -162,9 +144,8 @@ def targets_and_contact(
                   tables.parted)
 
 
-def aims(
-    tables: Tables, phonemes: Sequence[Tuple[int, int]], counts: Optional[Sequence[int]] = None
-) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]],
+         counts: Optional[Sequence[int]] = None) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Targets (T, C) in the tables' positions, where they are in contact (T, C), and the frames (T,) that end units,
     of pairs of phoneme number and milliseconds; `counts` as in :func:`labial.reference.units.segments`."""
     check(tables, phonemes)
@@ -175,19 +156,9 @@ def aims(
     return target, contact, unit_ends(held, tables.boundary)
 
 
-def solution(
-    tables: Tables,
-    target: np.ndarray,
-    contact: np.ndarray,
-    ends: np.ndarray,
-    gain: Optional[np.ndarray] = None,
-    *,
-    whole: bool = False,
-    window: int = WINDOW,
-    lag: int = LAG,
-    begin: int = 0,
-    searched: int = SEARCHED,
-) -> np.ndarray:
+def solution(tables: Tables, target: np.ndarray, contact: np.ndarray, ends: np.ndarray,
+             gain: Optional[np.ndarray] = None, *, whole: bool = False, window: int = WINDOW, lag: int = LAG,
+             begin: int = 0, searched: int = SEARCHED) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion for targets (T, C) in the tables' positions, some of them in `contact`
     (T, C); `ends` (T,) are the frames that end a unit, the last one among them; `gain` (T, C) is their articulation,
     1 without it. The first is frame `begin` of a stream, whose channels have their turns counted from its own

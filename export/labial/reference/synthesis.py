@@ -18,9 +18,8 @@ def is_published(model: Model) -> bool:
     return model.method == "paper"
 
 
-def synthesise(
-    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100
-) -> np.ndarray:
+def synthesise(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False,
+               articulation: int = 100) -> np.ndarray:
     """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
 
     A model of the published method is searched and solved unit by unit (:mod:`labial.reference.published`), one of
@@ -33,10 +32,8 @@ def synthesise(
     return stream.synthesise(FloatTables(model), phonemes, articulation=articulation)
 
 
-def delivered(
-    model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100,
-    exact: bool = False
-) -> Iterator[np.ndarray]:
+def delivered(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False, articulation: int = 100,
+              exact: bool = False) -> Iterator[np.ndarray]:
     """The motion of :func:`synthesise` as a stream delivers it, in parts (n, 13) as they are computed: it begins at
     rest and, unless it is to be `exact`, ends there (:mod:`labial.reference.fade`). That of a model of the published
     method is as it was published, all at once."""

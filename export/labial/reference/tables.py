@@ -64,23 +64,20 @@ class FloatTables:
         self.parted = PARTED[own]  #: (C,)
         self.ahead = _look_ahead(self.lags, bool(np.isfinite(self.floor).any()))
         self.stride = model.search_stride
-        self.chains = normal_chains(
-            model.emission_mean[own], model.emission_variance[own], model.log_transition[own], model.log_initial[own]
-        )
+        self.chains = normal_chains(model.emission_mean[own], model.emission_variance[own], model.log_transition[own],
+                                    model.log_initial[own])
         mixtures = {name: getattr(model, name) for name in ShapeTables.__dataclass_fields__}
         self._mixtures = ShapeTables(**{**mixtures, "shape": model.shape[:, own], "slope": model.slope[:, own]})
         self._kernel, self._pair_shape = model.kernel[..., own], model.pair_shape[..., own]
         self.knots = model.pair_shape.shape[1]  #: K, of the shapes of a phoneme
 
-    def select(
-        self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
-    ) -> np.ndarray:
+    def select(self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray,
+               following: np.ndarray) -> np.ndarray:
         """(S, K, C) shapes of phonemes (S,) of these durations between these neighbours: one for the whole phoneme, or
         one at its start and one at its end."""
         model, classes = self.model, self.viseme_class
-        choice = choose(
-            self._mixtures, phoneme, milliseconds / 1000.0, classes[previous], classes[following], soft=bool(model.soft)
-        )
+        choice = choose(self._mixtures, phoneme, milliseconds / 1000.0, classes[previous], classes[following],
+                        soft=bool(model.soft))
         selected = np.repeat(shapes(self._mixtures, choice)[:, None], self.knots, axis=1)
         result: np.ndarray = selected + pairs_beside(model.pair_key, self._pair_shape, phoneme, previous, following)
         return result
@@ -97,9 +94,8 @@ class FloatTables:
         result: np.ndarray = shapes + self._kernel[neighbours, taps].sum(axis=1)
         return result
 
-    def search(
-        self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
-    ) -> np.ndarray:
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
+               searched: int = SEARCHED) -> np.ndarray:
         """(T, C) int64: the state path for targets (T, C), given the frames (T,) that end units; the first is
         frame `begin` of the stream. A step considers `searched` states."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
@@ -107,12 +103,9 @@ class FloatTables:
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """Equation 3's terms for `path` (T, C); frames in `contact` (T, C) follow their target alone."""
         own = self.solved, path
-        return _in_contact(Equation(
-            weight=self.model.state_precision[own],
-            mean=self.model.state_mean[own],
-            anchor=self.model.state_anchor[own],
-            target=targets,
-        ), contact, self.model.firm[self.solved])
+        return _in_contact(Equation(weight=self.model.state_precision[own], mean=self.model.state_mean[own],
+                                    anchor=self.model.state_anchor[own],
+                                    target=targets), contact, self.model.firm[self.solved])
 
     def complete(self, motion: np.ndarray) -> np.ndarray:
         """(T, 13) frames of the motion (T, C) that was solved, FAP."""
@@ -151,9 +144,8 @@ class ExportedTables:
                              self.emission)
         self.knots = exported.pairs.shape[1]
 
-    def select(
-        self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray, following: np.ndarray
-    ) -> np.ndarray:
+    def select(self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray,
+               following: np.ndarray) -> np.ndarray:
         """Like :meth:`FloatTables.select`, in positions."""
         selected = np.zeros((len(phoneme), self.knots, len(self.solved)), dtype=self.dtype)
         for i, one in enumerate(zip(phoneme.tolist(), milliseconds.tolist(), previous.tolist(), following.tolist())):
@@ -212,9 +204,8 @@ class ExportedTables:
         result: np.ndarray = z_cost(z) + model.emission_cost[own]
         return result
 
-    def search(
-        self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0, searched: int = SEARCHED
-    ) -> np.ndarray:
+    def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
+               searched: int = SEARCHED) -> np.ndarray:
         """As :meth:`FloatTables.search`."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
@@ -226,8 +217,7 @@ class ExportedTables:
         return _in_contact(Equation(
             weight=np.concatenate([(hold * (1.0 - share))[..., None], moving], axis=-1),
             mean=model.means()[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
-            anchor=hold * share,
-            target=self.to_fap(targets),
+            anchor=hold * share, target=self.to_fap(targets)
         ), contact, weight_value(model.firm))
 
     def complete(self, motion: np.ndarray) -> np.ndarray:

@@ -93,9 +93,8 @@ def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     return Forward().take(terms, True)
 
 
-def starts(
-    frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0, channels: int = CHANNELS
-) -> np.ndarray:
+def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0,
+           channels: int = CHANNELS) -> np.ndarray:
     """(T, C) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
 
     A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after

@@ -47,9 +47,8 @@ def pause_cut(frames: int, milliseconds: int, ahead: int, fps: int) -> List[Tupl
     return [(frames - ahead, milliseconds - tail), (ahead, tail)]
 
 
-def segments(
-    phonemes: Sequence[Tuple[int, int]], silence: int, ahead: int, fps: int, counts: Optional[Sequence[int]] = None
-) -> List[Segment]:
+def segments(phonemes: Sequence[Tuple[int, int]], silence: int, ahead: int, fps: int,
+             counts: Optional[Sequence[int]] = None) -> List[Segment]:
     """The phonemes, pairs of number and milliseconds, that have frames; pauses are cut by :func:`pause_cut`. `counts`
     are their frames where they follow others, which leave something over."""
     result = []

@@ -38,9 +38,8 @@ class Chains:
     emission: Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
-def normal_chains(
-    mean: np.ndarray, variance: np.ndarray, log_transition: np.ndarray, log_initial: np.ndarray
-) -> Chains:
+def normal_chains(mean: np.ndarray, variance: np.ndarray, log_transition: np.ndarray,
+                  log_initial: np.ndarray) -> Chains:
     """The chains, in nats, of states that are Gaussians of these means and variances (C, Q), but for the constant."""
 
     def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -108,9 +107,8 @@ class Search:
         return result
 
 
-def search(
-    chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED, before: Optional[Search] = None
-) -> Search:
+def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED,
+           before: Optional[Search] = None) -> Search:
     """The search of B blocks of N utterances, for the targets (B, N, C) that are looked at.
 
     `closed` (B, N, C) says which blocks end a unit. Of the edges into a state the least wins, the first of equals, a

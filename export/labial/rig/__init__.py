@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Tuple
 
 _FOLDER = Path(__file__).resolve().parent
-
 #: Names of the built-in rigs.
 FACES: Tuple[str, ...] = tuple(sorted(path.stem for path in _FOLDER.glob("*.toml")))
 

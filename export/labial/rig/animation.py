@@ -31,7 +31,6 @@ LIVE_LINK = """
     BrowOuterUpRight CheekPuff CheekSquintLeft CheekSquintRight NoseSneerLeft NoseSneerRight TongueOut HeadYaw
     HeadPitch HeadRoll LeftEyeYaw LeftEyePitch LeftEyeRoll RightEyeYaw RightEyePitch RightEyeRoll
 """.split()
-
 #: FAPs of MPEG-4, each with an entry in the mask of a .fap file.
 _FAPS = 68
 

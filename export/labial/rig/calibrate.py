@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
-from typing import Union
 
 from labial import __version__
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.outputs import writing
 from labial.rig.description import CURVE_POINTS, PULSE_MAX, PULSE_MIN, Rig
 
 #: Most outputs: the sketch selects them by a digit.
 OUTPUTS_MAX = 10
-
 #: Prints a pulse in degrees, rounded to hundredths.
 _PRINT_DEGREES = """\
     const double place = (pulse - {start!r}) / {each!r};
@@ -226,7 +223,7 @@ void loop()
 """
 
 
-def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> Path:
+def write(rig: Rig, directory: PathLike) -> Path:
     """Writes NAME_calibrate/NAME_calibrate.ino, as the IDE requires, into `directory`; returns its path."""
     text = sketch(rig)
     folder = Path(directory) / f"{rig.name}_calibrate"

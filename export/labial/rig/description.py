@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files import limits
 from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NAMES
 from labial.files.toml import Table, meant, read_toml
@@ -20,7 +20,6 @@ from labial.tables.visemes import VISEMES
 
 #: Range of a servo's pulses, microseconds: wider than that of any common servo, narrow enough to detect typing errors.
 PULSE_MIN, PULSE_MAX = 400.0, 2600.0
-
 #: Default pulses at 0 and 180 degrees: those of Arduino's library Servo.
 DEGREES = (544.0, 2400.0)
 _PLACES = ("neutral", "full", "minimum", "maximum", "closed")
@@ -30,10 +29,8 @@ _OUTPUT_KEYS = ("from", "neutral", "full", "reach", "gain", "minimum", "maximum"
                 "deadband", "acceleration", "curve", "visemes")
 #: Points of a linkage's curve.
 CURVE_POINTS = (2, 9)
-
 #: A weight or a value for each of the 13 channels. Not an array, since the run-time reads rigs without numpy.
 Row = Tuple[float, ...]
-
 #: The PCA9685 divides its oscillator by its prescaler, and each period into 4096 ticks.
 _PCA9685_OSCILLATOR, _PCA9685_TICKS = 25e6, 4096
 _PCA9685_PRESCALE = (3, 255)
@@ -105,13 +102,11 @@ GESTURES: Dict[str, Gesture] = {
     "spread": Gesture(_weights(fap53=0.5, fap54=0.5), 100.0),
     "rounding": Gesture(_weights(fap17=1, fap53=-0.5, fap54=-0.5), 200.0),
 }
-
 #: All names for ``from``: gestures, MPEG-4's names of FAPs, columns of a frames file.
 SOURCES: Mapping[str, Gesture] = {
     **{name: Gesture(_alone(k), None) for names in (FAP_NAMES, FAP_COLUMNS) for k, name in enumerate(names)},
     **GESTURES,
 }
-
 #: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth, and lips pressed on
 #: each other over a jaw that is half open, which shows whether a face can close in p, b, m.
 POSES: Dict[str, Row] = {
@@ -175,7 +170,7 @@ class Rig:
     numbers: Numbers = Numbers()
 
 
-def read(path: Union[str, os.PathLike[str]], name: str) -> Rig:
+def read(path: PathLike, name: str) -> Rig:
     """The rig that the file describes, called `name`. Raises DataError naming the file and the line or key."""
     where = os.fspath(path)
     content = read_toml(path)

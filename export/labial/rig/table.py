@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import textwrap
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Callable, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Callable, List, Optional, Tuple
 
-from labial.errors import DataError, ModelError
+from labial.errors import DataError, ModelError, PathLike
 from labial.files.c import check_name, written_by
 from labial.files.faps import FAP_NAMES, TOUCHING
 from labial.files.outputs import folder, writing
@@ -27,7 +26,6 @@ APART = 136  # the opening at which lips no longer touch at all
 WEIGHT_MAX, WEIGHT_SUM_MAX, GAIN_MAX, VALUE_MAX = 32767, 65535, 268435455, 16777215
 SLOPE_MAX, SEGMENTS, VISEME_MAX = 1 << 25, 8, 32767
 _SLOPE_ONE = 1 << 20
-
 #: FAPs up to which a table is within one unit of the description; faces stay well below.
 FAP_MAX = 1000.0
 #: Most units by which weights and gain may miss the description; factors tried where no power of two comes so near.
@@ -309,7 +307,7 @@ const labial_rig_t {rig.name} = {{ outputs, {len(table)} }};
 """
 
 
-def write(rig: Rig, directory: Union[str, os.PathLike[str]]) -> List[Path]:
+def write(rig: Rig, directory: PathLike) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths. Nothing is written when the rig has errors."""
     check_name(rig.name, "rig")
     table = convert(rig)
@@ -343,7 +341,7 @@ def json_text(rig: Rig) -> str:
     return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
 
 
-def write_json(rig: Rig, directory: Union[str, os.PathLike[str]]) -> Path:
+def write_json(rig: Rig, directory: PathLike) -> Path:
     """Writes NAME.json into `directory`; its path."""
     content = json_text(rig)
     path = Path(directory) / f"{rig.name}.json"

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import secrets
 import struct
 from array import array
@@ -11,7 +10,7 @@ from itertools import chain
 from typing import Iterable, List, NamedTuple, Optional, Union
 
 from labial.core.guard import whole
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files.faps import CHANNELS
 from labial.runtime.rig import Faps, Rig, one_frame
 
@@ -21,7 +20,7 @@ FORMAT, RATE = 2, 50
 MOST = 255
 #: How many sessions there are.
 SESSIONS = 65536
-#: Largest difference of an output's limits for which the toy's sums stay below 2^31.
+#: Largest difference of an output's limits for which the sums of a toy or player stay below 2^31.
 SPAN_MAX = 8_000_000
 
 
@@ -51,7 +50,7 @@ class Beside:
         the toy tells these packets from those of the session before; drawn at random without it.
     """
 
-    def __init__(self, rig: Union[Rig, str, os.PathLike[str]], *, frames: int = 10, repeat: int = 0,
+    def __init__(self, rig: Union[Rig, PathLike], *, frames: int = 10, repeat: int = 0,
                  session: Optional[int] = None) -> None:
         self._rig = rig if isinstance(rig, Rig) else Rig(rig)
         self._frames, self._repeat = whole(frames, "a number of frames"), whole(repeat, "a number of repeated frames")

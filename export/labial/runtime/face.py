@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import math
-import os
 from typing import Mapping, Tuple, Union
 
 from labial.core.guard import Guard, alone, duration, number, whole
 from labial.core.library import DONE, checked, library, memory
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.runtime.rig import Faps, Rig, Values, one_frame
 
 #: LABIAL_FACE_AHEAD_MAX.
@@ -36,7 +35,7 @@ class Face:
         rig: the rig.
     """
 
-    def __init__(self, rig: Union[Rig, str, os.PathLike[str]], *, ahead: int = 0) -> None:
+    def __init__(self, rig: Union[Rig, PathLike], *, ahead: int = 0) -> None:
         self.rig = rig if isinstance(rig, Rig) else Rig(rig)
         ahead = whole(ahead, "a number of frames")
         if not 0 <= ahead <= AHEAD_MAX:

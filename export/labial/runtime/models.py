@@ -9,19 +9,9 @@ from functools import cache
 from typing import Any, List, Optional, Tuple, Union
 
 from labial.core.guard import whole
-from labial.core.library import (
-    BLOB_MAGIC,
-    ERROR_NAME,
-    ERROR_PHONEME,
-    OK,
-    checked,
-    failure,
-    library,
-    memory,
-    sentence,
-)
-from labial.corpus.aliases import LABEL_SETS
-from labial.errors import LabialError, ModelError, StreamError
+from labial.core.library import BLOB_MAGIC, ERROR_NAME, ERROR_PHONEME, OK, checked, failure, library, memory, sentence
+from labial.corpus.labels import LABEL_SETS
+from labial.errors import LabialError, ModelError, PathLike, StreamError
 from labial.files import limits
 
 #: Sets of labels, labial_labels_t (labial/names.h).
@@ -52,7 +42,7 @@ class Model:
     stride: int
     address: int
 
-    def __init__(self, path: Union[str, os.PathLike[str]]) -> None:
+    def __init__(self, path: PathLike) -> None:
         name = os.fspath(path) if isinstance(path, (str, os.PathLike)) else None
         if not isinstance(name, str):
             raise TypeError(f"a model is named by a path, not by {type(path).__name__}")
@@ -95,7 +85,7 @@ class Model:
         """The number of the phoneme that `label` means in the set `labels`: auto, arpabet, ipa or xsampa. Raises
         StreamError if it means none."""
         text = self._text(label)
-        found = library().find(self._names, _set(labels), text, len(text))
+        found = library().find(self._names, set_of(labels), text, len(text))
         if found < 0:
             raise failure(ERROR_NAME, f"{label!r} in {self.name}")
         return int(found)
@@ -103,7 +93,7 @@ class Model:
     def nearest(self, label: str, labels: str = "auto") -> int:
         """The number of a phoneme for any label: its meaning or the most similar phoneme; silence for noises."""
         text = self._text(label)
-        return checked(library().find_nearest(self._names, _set(labels), text, len(text), self.silence))
+        return checked(library().find_nearest(self._names, set_of(labels), text, len(text), self.silence))
 
     def number(self, phoneme: Union[str, int], labels: str = "auto", nearest: bool = False) -> int:
         """The number of a phoneme that is given by its label or its number, which is checked. Punctuation that is not a
@@ -160,7 +150,15 @@ def bundled(name: str) -> Model:
     return model
 
 
-def _set(labels: str) -> int:
+def expected(model: Any) -> Model:
+    """`model`. Raises TypeError for what is none."""
+    if not isinstance(model, Model):
+        raise TypeError(f"a model is a labial.Model, not {type(model).__name__}")
+    return model
+
+
+def set_of(labels: str) -> int:
+    """The library's number of a set of labels. Raises LabialError for another name."""
     if not isinstance(labels, str) or labels not in LABELS:
         raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
     return LABELS[labels]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Deque, Dict, Iterable, Iterator, List, Pr
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
 from labial.files.faps import CHANNELS
 from labial.rig import FACES, description_of
 
@@ -31,7 +31,6 @@ class HasFaps(Protocol):
 
 #: A frame of a stream or of hearing, or its 13 FAPs.
 Faps = Union[HasFaps, Iterable[int]]
-
 #: Value of each output by name: an int, or a float where the unit is weight.
 Values = Dict[str, Union[int, float]]
 
@@ -87,7 +86,7 @@ class Rig:
 
     BUILTIN: Tuple[str, ...] = FACES
 
-    def __init__(self, description: Union[str, os.PathLike[str]]) -> None:
+    def __init__(self, description: PathLike) -> None:
         from labial.rig.description import read  # with a TOML parser, which older Pythons lack
 
         path = Path(description)

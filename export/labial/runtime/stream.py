@@ -7,9 +7,8 @@ import math
 from array import array
 from typing import Any, List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone, duration, number, whole
+from labial.core.guard import Guard, alone, articulation, duration, number, whole
 from labial.core.library import (
-    ARTICULATION_MAX,
     DONE,
     DURATION_MAX,
     ERROR_FRAME_RATE,
@@ -24,7 +23,7 @@ from labial.core.library import (
     memory,
 )
 from labial.errors import LabialError, StreamError
-from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.rig import Rig, Values
 
 #: Numbers in an item: its model's place among the stream's, phoneme, milliseconds.
@@ -106,10 +105,9 @@ class Stream:
 
     def __init__(self, model: Optional[Model] = None, *, laughter: Optional[Model] = None, labels: str = "auto",
                  nearest: bool = False, exact: bool = False) -> None:
-        first = _a_model(bundled("speech_en") if model is None else model)
-        self._laughter = _a_model(bundled("laughter_synthetic") if laughter is None else laughter)
-        if not isinstance(labels, str) or labels not in LABELS:
-            raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
+        first = expected(bundled("speech_en") if model is None else model)
+        self._laughter = expected(bundled("laughter_synthetic") if laughter is None else laughter)
+        set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
         self._guard = Guard()
         self._models: List[Model] = []
@@ -173,7 +171,7 @@ class Stream:
         """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames, that of lips
         over fewer to a contact. Raises StreamError if its frame rate or search stride is not the stream's."""
         self._open()
-        self._current = self._place(_a_model(model))
+        self._current = self._place(expected(model))
 
     @alone
     def end(self) -> None:
@@ -210,10 +208,7 @@ class Stream:
         now on come nearer to it by up to 10 percent each. A cancel or a restart keeps it. Raises LabialError for a
         number out of range."""
         self._open()
-        wanted = number(percent, "an articulation")
-        if not 0.0 <= wanted <= ARTICULATION_MAX:
-            raise LabialError(f"an articulation of {wanted:g} is not within 0 .. {ARTICULATION_MAX}")
-        checked(self._library.mouth_articulation(self._address, math.floor(wanted + 0.5)))
+        checked(self._library.mouth_articulation(self._address, articulation(percent)))
 
     # ---- Output
 
@@ -379,9 +374,3 @@ class Stream:
         later = sum(self._items[_ITEM * self._used + 2::_ITEM])
         return Latency(core.mouth_held(at) + (later * self.fps + 500) // 1000, core.mouth_milliseconds(at) + later,
                        core.mouth_waiting(at) + self._waiting(), core.mouth_delay(at))
-
-
-def _a_model(model: Any) -> Model:
-    if not isinstance(model, Model):
-        raise TypeError(f"a model is a labial.Model, not {type(model).__name__}")
-    return model

@@ -40,9 +40,9 @@ from labial.corpus.words import (
 )
 from labial.errors import LabialError, StreamError
 from labial.files.faps import CHANNELS
-from labial.runtime.models import LABELS, Model, bundled
+from labial.runtime.models import Model, bundled, expected, set_of
+from labial.runtime.render import Sounds, offset
 from labial.runtime.stream import Frame
-from labial.runtime.words import Sounds, offset
 
 #: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
 #: one place, a word up to 20 letters two (LABIAL_VOICE_SIZE of include/labial/voice.h).
@@ -59,7 +59,6 @@ _SPOKEN = 10_000
 #: Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t).
 _KINDS = {"phonemes": 0, "azure": 1, "polly": 2, "words": 3, "characters": 4}
 _ABSOLUTE, _CHAINED, _JOINED = range(3)
-
 #: Text, beginning and end of an item in seconds; the end is None where it is not known.
 _Item = Tuple[Union[str, int], float, Optional[float]]
 
@@ -90,11 +89,8 @@ class Voice:
     def __init__(self, format: Optional[str] = None, *, model: Optional[Model] = None, labels: str = "auto",
                  nearest: bool = False, own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
                  numbers: bool = False, offset_ms: float = 0.0) -> None:
-        self._model = bundled("speech_en") if model is None else model
-        if not isinstance(self._model, Model):
-            raise TypeError(f"a model is a labial.Model, not {type(model).__name__}")
-        if not isinstance(labels, str) or labels not in LABELS:
-            raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
+        self._model = expected(bundled("speech_en") if model is None else model)
+        set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
         self._guard = Guard()
         self._messages = Messages(format, labels)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -13,13 +13,11 @@ from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
 from labial.corpus.timings import SourceSegment, meaning, phone_set_of
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.frames import opening
 from labial.files.grammar import fields_of, is_blank, is_number, is_whole, read_lines, shown
 from labial.tables.bundled import is_model
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: Kinds of bands: visible features of a phoneme.
 KINDS = ("vowel", "closed", "labiodental", "silence", "other")
@@ -47,10 +45,8 @@ class Band:
     kind: str
 
 
-def read_motion(
-    path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
-    tier: Optional[str] = None
-) -> Motion:
+def read_motion(path: PathLike, timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
+                tier: Optional[str] = None) -> Motion:
     """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells; or, by a model, makes the motion
     of phoneme timings of the format `source`. Raises DataError; LabialError for a model without timings."""
     name = Path(path).stem
@@ -78,10 +74,8 @@ def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[st
     return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames, sounds)
 
 
-def read_motions(
-    paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO, source: Optional[str] = None,
-    tier: Optional[str] = None
-) -> List[Motion]:
+def read_motions(paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO,
+                 source: Optional[str] = None, tier: Optional[str] = None) -> List[Motion]:
     """Reads several as :func:`read_motion` does; where two have the same name, all are called by their paths."""
     motions = [read_motion(path, timings, labels, source, tier) for path in paths]
     if len({motion.name for motion in motions}) < len(motions):
@@ -129,9 +123,8 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     return np.arange(count) / fps, frames
 
 
-def read_bands(
-    path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None, tier: Optional[str] = None
-) -> List[Band]:
+def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None,
+               tier: Optional[str] = None) -> List[Band]:
     """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
 
     Labels are of the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an

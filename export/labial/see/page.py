@@ -9,11 +9,11 @@ import math
 import os
 import warnings
 from pathlib import Path
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import DataError, LabialError
+from labial.errors import DataError, LabialError, PathLike
 from labial.files import limits
 from labial.files.frames import even
 from labial.files.grammar import read_bytes
@@ -27,7 +27,6 @@ from labial.rig.description import Rig, read
 from labial.see.motion import Band, Motion, laughs
 from labial.see.player import player, script_data
 
-PathLike = Union[str, os.PathLike[str]]
 
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
     """The page as text; `title` is the motion's name unless given.

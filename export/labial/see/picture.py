@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
-from typing import Callable, List, Sequence, Tuple, Union
+from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 
-from labial.errors import needs
+from labial.errors import PathLike, needs
 from labial.fit.fit import output_name
 from labial.fit.landmarks import Found
 from labial.rig.animation import outputs
@@ -16,10 +15,8 @@ from labial.runtime.render import render
 
 #: A caption, phonemes with milliseconds, mostly of a word, and the place of the one that is drawn; a laugh has none.
 Sound = Tuple[str, Tuple[Tuple[str, int], ...], int]
-
 #: What makes frames (T, 13), FAP, 50 a second, of phonemes with milliseconds.
 Speak = Callable[[List[Tuple[str, int]]], np.ndarray]
-
 #: The drawn phonemes.
 _SAID: Tuple[Sound, ...] = (
     ("rest", (("SIL", 200),), 0),
@@ -56,19 +53,19 @@ def said(sounds: Sequence[Sound] = _SAID, speak: Speak = _rendered) -> Tuple[Lis
     return [caption for caption, _, _ in sounds], np.array(frames, dtype=np.float64)
 
 
-def draw(rig: Rig, found: Found, path: Union[str, os.PathLike[str]]) -> None:
+def draw(rig: Rig, found: Found, path: PathLike) -> None:
     """Writes the picture of :data:`_SAID`, PNG. Raises LabialError without matplotlib."""
     sheet(rig, found, path, *said())
 
 
-def sheet(rig: Rig, found: Found, path: Union[str, os.PathLike[str]], captions: Sequence[str], frames: np.ndarray,
+def sheet(rig: Rig, found: Found, path: PathLike, captions: Sequence[str], frames: np.ndarray,
           columns: int = 5, inches: float = 2.2) -> None:
     """Writes the head in each of the frames (N, 13), FAP, in rows of `columns`, each `inches` wide and with its
     caption: PNG. Raises LabialError without matplotlib."""
     with needs("drawing (--no-figure leaves it out)", "fit"):
         from matplotlib.collections import PolyCollection
 
-        from labial.see.drawing import pyplot, style
+        from labial.see.plot import pyplot, style
 
     weights = outputs(rig, frames)
     rows = -(-len(frames) // columns)

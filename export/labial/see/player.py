@@ -8,19 +8,16 @@ import os
 import re
 from html import escape
 from pathlib import Path
-from typing import Any, Dict, Optional, Sequence, Union
+from typing import Any, Dict, Optional, Sequence
 
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files import limits
 from labial.files.faps import FAP_COLUMNS
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: The template of the player and its drawing, shared with the C demo; motion and drawing replace the words below.
 PLAYER = Path(__file__).with_name("player.html")
 MOUTH = Path(__file__).with_name("mouth.js")
 DATA_PLACE, MOUTH_PLACE = "@LABIAL_DATA@", "@LABIAL_MOUTH@"
-
 #: First bytes of sounds that browsers play, their place, and the media type.
 _SOUNDS = (
     (0, rb"RIFF....WAVE", "audio/wav"),
@@ -44,9 +41,9 @@ def player(title: str, fps: float, frames: Sequence[Sequence[int]], phonemes: Se
     return before + script_data(data, audio) + between + MOUTH.read_text(encoding="utf-8") + after
 
 
-def framed(page: str, height: int = 640) -> str:
+def framed(page: str) -> str:
     """A page within another one, such as a notebook."""
-    return f'<iframe srcdoc="{escape(page)}" style="width: 100%; height: {height}px; border: 0"></iframe>'
+    return f'<iframe srcdoc="{escape(page)}" style="width: 100%; height: 640px; border: 0"></iframe>'
 
 
 def script_data(data: Dict[str, Any], audio: Optional[PathLike]) -> str:

@@ -1,17 +1,127 @@
-"""``labial plot``: trajectories over time, one panel per channel, phonemes behind them, several files overlaid."""
+"""``labial plot``: trajectories over time, one panel per channel, phonemes behind them, several files overlaid.
+
+The style is that of all of Labial's plots: colours, phonemes over and behind the curves, output of figures.
+"""
 
 from __future__ import annotations
 
 import os
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, List, NamedTuple, Sequence, Tuple, Union
+from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, Sequence, Tuple, Union
 
+import matplotlib
 import numpy as np
+from matplotlib import pyplot as pyplot  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 
-from labial.errors import LabialError
+from labial.errors import LabialError, PathLike
+from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NAMES
-from labial.see.drawing import COLOURS, label, legend_patches, pyplot, shade, style, write
-from labial.see.motion import Band, Motion, laughs
+from labial.files.outputs import writing
+from labial.rig.description import POSES, Rig
+from labial.rig.table import convert, expected
+from labial.see.motion import KINDS, Band, Motion, laughs
+
+matplotlib.use("Agg")
+
+#: Colours of curves that red-green blind people can distinguish (Okabe and Ito).
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+#: Background and legend of each kind of band. Plain consonants have none.
+BANDS = {
+    "vowel": ("#fdf0d2", "vowel"),
+    "closed": ("#f6c9c9", "p b m: lips closed"),
+    "labiodental": ("#d9cdf0", "f v: lip to teeth"),
+    "silence": ("#e4e7eb", "silence"),
+}
+#: Colour of the labels of each kind; of others "0.1". Those of consonants that have a band are bold.
+LABELS = {"closed": "#b3202c", "labiodental": "#5b3f99", "silence": "0.55"}
+assert set(BANDS) | set(LABELS) <= set(KINDS)
+
+_STYLE: Any = {
+    "font.size": 8.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": "0.55",
+    "axes.linewidth": 0.7,
+    "axes.labelcolor": "0.15",
+    "xtick.color": "0.35",
+    "ytick.color": "0.35",
+    "svg.hashsalt": "labial",
+    "svg.fonttype": "none",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Figures are drawn and written within this, which sets how all of them look."""
+    with pyplot.rc_context(_STYLE):
+        yield
+
+
+def shade(axes: Axes, bands: Iterable[Band]) -> None:
+    """Draws the bands behind the curves: a colour by kind, a thin line where each begins and ends."""
+    for band in bands:
+        if band.kind in BANDS:
+            axes.axvspan(band.start, band.end, color=BANDS[band.kind][0], linewidth=0, zorder=0)
+        for edge in (band.start, band.end):
+            axes.axvline(edge, color="0.82", linewidth=0.5, zorder=0.5)
+
+
+def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
+    """Writes the bands' labels above the axes and returns them; labels of successive short bands are stepped upwards to
+    stay apart, and a label without room is omitted. `upright` suits names that are wider than their bands, such as
+    those of laughter.
+
+    The axes must have their limits and their place in the figure; what changes their width afterwards changes it
+    little.
+    """
+    texts: List[Text] = []
+    scale = 72.0 / axes.figure.dpi
+    points = axes.get_window_extent().width * scale
+    left, right = axes.get_xlim()
+    taken = [-1e9] * (1 if upright else 3)  # where the last label of each row ends, points
+    for band in bands:
+        middle = (band.start + band.end) / 2
+        if not left <= middle <= right:
+            continue
+        place = (middle - left) / (right - left) * points
+        text = axes.annotate(
+            band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3), textcoords="offset points",
+            ha="center", va="bottom", rotation=90 if upright else 0, fontsize=size, color=LABELS.get(band.kind, "0.1"),
+            fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")  # fmt: skip
+        half = 0.4 * size if upright else 0.5 * text.get_window_extent().width * scale + 1.0
+        row = next((number for number, end in enumerate(taken) if place - half >= end), None)
+        if row is None:
+            text.remove()
+            continue
+        taken[row] = place + half
+        text.set_position((0, 3 + row * size * 1.15))
+        texts.append(text)
+    return texts
+
+
+def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
+    """One entry of a legend for each kind of band that occurs."""
+    present = {band.kind for band in bands}
+    return [Patch(facecolor=colour, edgecolor="0.8", linewidth=0.5, label=name)
+            for kind, (colour, name) in BANDS.items() if kind in present]
+
+
+def write(figure: Figure, path: PathLike, dpi: int = 110) -> None:
+    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it.
+
+    Figures are drawn and written within :func:`style`.
+    """
+    unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
+    suffix = Path(path).suffix.lower()
+    with writing(path) as file:
+        figure.savefig(file, dpi=dpi, format=suffix[1:] or None, metadata=unstamped.get(suffix))
+    pyplot.close(figure)
+
 
 #: Default channels.
 DEFAULT = "fap3,opening,stretch,fap17"
@@ -74,7 +184,7 @@ def _span(motions: Sequence[Motion], bands: Sequence[Band]) -> Tuple[float, floa
     return first, last if last > first else first + 0.04
 
 
-def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.PathLike[str]],
+def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike,
          channels: str = DEFAULT) -> None:
     """Writes the plot of one motion or more to `path` (.png, .svg or .pdf).
 
@@ -112,3 +222,41 @@ def plot(motions: Sequence[Motion], bands: Sequence[Band], path: Union[str, os.P
                       ncol=len(curves) + len(patches) if len(curves) + len(patches) <= 7 else 5, frameon=False,
                       fontsize=8, handlelength=1.6, columnspacing=1.6, borderaxespad=0.2)
         write(figure, path, dpi=150)
+
+
+#: Drawn shares of a pose; a quarter beyond it shows limits.
+_SHARES = np.linspace(0.0, 1.25, 51)
+
+
+def draw_rig(rig: Rig, path: Union[str, Path]) -> None:
+    """Writes how each output moves from rest to a few poses, which shows errors in a description, as SVG; the same rig
+    gives the same bytes."""
+    limits.refuse(rig.path, "it has", len(rig.outputs), limits.DRAWN, "outputs (--no-figure leaves the drawing out)")
+    table = convert(rig)
+    columns = min(len(table), 3)
+    rows = -(-len(table) // columns)
+    with style():
+        figure, every = pyplot.subplots(rows, columns, figsize=(3.4 * columns + 0.4, 2.5 * rows + 0.7), squeeze=False,
+                                        sharex=True, layout="constrained")
+        for (pose, faps), colour in zip(POSES.items(), COLOURS):
+            values = expected(rig, table, _SHARES[:, None] * faps)
+            for number in range(len(table)):
+                every.flat[number].plot(100 * _SHARES, values[:, number], color=colour, label=pose, linewidth=1.6)
+        for axes, whole in zip(every.flat, table):
+            for limit in (whole.minimum, whole.maximum):
+                axes.axhline(limit, color="0.55", linewidth=0.8, linestyle="--")
+            margin = 0.06 * max(whole.maximum - whole.minimum, 1)
+            axes.set_ylim(whole.minimum - margin, whole.maximum + margin)
+            axes.set_title(whole.name)
+            axes.set_xlim(0, 125)
+            axes.grid(alpha=0.25)
+        for axes in list(every.flat)[len(table):]:
+            axes.set_visible(False)
+        for axes in list(every.flat)[max(len(table) - columns, 0) : len(table)]:  # each column's last
+            axes.tick_params(labelbottom=True)
+        for axes in every[:, 0]:
+            axes.set_ylabel(rig.unit.text.split(" (")[0])
+        figure.supxlabel("percent of the pose")
+        figure.legend(*every.flat[0].get_legend_handles_labels(), loc="outside upper center", frameon=False,
+                      ncols=2 if columns == 1 else len(POSES))
+        write(figure, path)

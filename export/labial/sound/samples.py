@@ -11,8 +11,7 @@ import soundfile
 import soxr
 
 from labial.corpus.formats import VIDEOS
-from labial.corpus.timings import PathLike
-from labial.errors import DataError, needs
+from labial.errors import DataError, PathLike, needs
 from labial.files import limits
 from labial.files.channels import Phase
 from labial.files.frames import spans

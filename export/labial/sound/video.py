@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import Iterator, List, Tuple, Union
+from typing import Iterator, List, Tuple
 
 import av
 import numpy as np
 
-from labial.errors import DataError, SilentError
+from labial.errors import DataError, PathLike, SilentError
 from labial.files import limits
-
-PathLike = Union[str, os.PathLike[str]]
 
 
 def pictures(path: PathLike) -> Iterator[Tuple[float, np.ndarray]]:

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Union
 
 from labial import BUNDLED
-from labial.errors import LabialError, did_you_mean
-
-PathLike = Union[str, os.PathLike[str]]
+from labial.errors import LabialError, PathLike, did_you_mean
 
 #: The bundled models by kind.
 BY_KIND = dict(zip(("speech", "laughter"), BUNDLED))
-
 #: Help of an argument that takes a model.
 MODEL_HELP = f"a model's file (.npz), or the name of one that Labial comes with: {', '.join(BUNDLED)}"
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import textwrap
 from pathlib import Path
-from typing import List, Sequence, Union
+from typing import List, Sequence
 
 import numpy as np
 
 from labial import __version__
-from labial.corpus.aliases import LABEL_SETS
-from labial.errors import ModelError
+from labial.corpus.labels import LABEL_SETS
+from labial.errors import ModelError, PathLike
 from labial.files.c import block_comment, check_name, constants_of, rows
 from labial.files.faps import FAP_NAMES
 from labial.files.outputs import folder
@@ -186,7 +185,7 @@ const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entr
 """
 
 
-def write(model: ExportedModel, directory: Union[str, os.PathLike[str]], *, binary: bool = False) -> List[Path]:
+def write(model: ExportedModel, directory: PathLike, *, binary: bool = False) -> List[Path]:
     """Writes the C files, and with `binary` NAME.lbm, into `directory`; returns their paths."""
     check_name(model.name)
     files = {

@@ -6,32 +6,26 @@ import numpy as np
 
 #: Costs are 1/32 nat.
 COST_SCALE = 32
-
 #: Positions are 1/16 FAP unit, at most this far from the channel's centre.
 POSITION_SCALE = 16
 POSITION_MAX = 16383
 NO_FLOOR = -16384
-
 #: LABIAL_CONTACT_FRAMES: a shorter phoneme in contact borrows frames from its neighbours.
 CONTACT_FRAMES = 3
-
 #: Bounds of equation 3, per channel: the largest diagonal element; the least hold of a frame; the largest ratio of a #:
 #: state's delta-delta weight to its hold; and how far, in positions, delta means may pull the frame of least hold.
 WEIGHT_SUM_MAX = 16383
 WEIGHT_MIN = 8
 STIFFNESS_MAX = 16
 PULL_MAX = 65535
-
 #: The largest z, Q6, of a duration and of an emission; beyond it a Gaussian's cost no longer grows.
 DURATION_Z_MAX = 65535
 EMISSION_Z_MAX = 1023
-
 #: The number of states that the search scores, around the one nearest to the target. Any of them can be entered from
 #: the best one of the previous step at the highest cost of a transition, which is also the largest score above the
 #: best.
 SEARCHED = 8
 LEAP = 255
-
 #: Values of the 256 codes of the minifloat weight.
 WEIGHTS = np.array([m if e == 0 else (16 + m) << (e - 1) for e in range(16) for m in range(16)], dtype=np.int64)
 

@@ -15,11 +15,9 @@ from labial.tables.fixed import POSITION_SCALE
 
 #: Values of the table of FAP 17.
 VALUES = 17
-
 #: In `source`: the channel is computed of the corners. In the library's tables it is LABIAL_FROM_CORNERS.
 FROM_CORNERS = -1
 IN_TABLES = 255
-
 #: Places in a frame of FAP 17 and of both corners.
 FAP_17 = FAP_NUMBERS.index(17)
 CORNERS = tuple(map(FAP_NUMBERS.index, (53, 54)))

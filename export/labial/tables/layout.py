@@ -65,9 +65,8 @@ def _flat(name: str, kind: str, layout: str, values: Optional[np.ndarray], group
 
 def shared_tables(model: ExportedModel) -> List[Table]:
     """The tables of all channels together."""
-    phonemes = np.stack(
-        [model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor], axis=1
-    )
+    phonemes = np.stack([model.first_component, model.component_count, model.viseme_class, model.boundary, model.floor],
+                        axis=1)
     components = np.stack([model.cost, model.duration_mean, model.duration_gain], axis=1)
     computed = np.zeros((0, 19), dtype=np.int64) if model.protrusion is None else model.protrusion[None]
     return [
@@ -108,9 +107,7 @@ def _kernel_words(kernels: np.ndarray) -> np.ndarray:
 def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     """The tables of one channel."""
     k = channel
-    emissions = np.stack(
-        [model.emission_mean[k], model.emission_gain[k], model.emission_cost[k]], axis=1
-    )
+    emissions = np.stack([model.emission_mean[k], model.emission_gain[k], model.emission_cost[k]], axis=1)
     states = np.column_stack([model.state_mean[k], model.state_motion[k], model.state_hold[k], model.state_share[k],
                               model.state_weight[k]])
     return [

@@ -16,7 +16,7 @@ import numpy as np
 
 from labial.core.library import BLOB_MAGIC
 from labial.defaults import KINDS, METHODS
-from labial.errors import ModelError, expect
+from labial.errors import ModelError, PathLike, expect
 from labial.files import limits
 from labial.files.arrays import ArrayError, array, read_zip, write_model
 from labial.files.faps import CHANNELS
@@ -230,7 +230,7 @@ def save(model: Model, path: Union[str, os.PathLike[str], BinaryIO]) -> None:
                 ((name, value) for name, value in values if name not in _OPTIONAL or len(value)))
 
 
-def load(path: Union[str, os.PathLike[str]]) -> Model:
+def load(path: PathLike) -> Model:
     """Reads and checks a model, from a file or by a bundled name. Raises ModelError, which names the file, for anything
     else."""
     path = model_file(path)
@@ -320,10 +320,5 @@ def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.nd
         meets[model.phonemes.index(model.silence)] = False
         own[meets] = 1.0
     of_component = np.repeat(own, model.component_count, axis=0)
-    return replace(
-        model,
-        shape=centre + (model.shape - centre) * of_component,
-        slope=model.slope * of_component,
-        kernel=model.kernel * factor,
-        pair_shape=model.pair_shape * factor,
-    )
+    return replace(model, shape=centre + (model.shape - centre) * of_component, slope=model.slope * of_component,
+                   kernel=model.kernel * factor, pair_shape=model.pair_shape * factor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from labial.corpus.episode import Segment
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import AUTO, PhoneSet, aliases_for
 from labial.corpus.timings import phoneme_segments
+from labial.errors import PathLike
 from labial.tables.model import Model
 
 #: Seconds of motion from which on a warning says why a command takes long.
@@ -22,21 +23,14 @@ Stream = List[Tuple[int, int]]
 
 def phone_set(model: Model) -> PhoneSet:
     """The phone set of a model."""
-    return PhoneSet(
-        kind=model.kind,
-        phonemes=model.phonemes,
-        classes=model.classes,
-        viseme_class=tuple(int(c) for c in model.viseme_class),
-        boundary=tuple(bool(b) for b in model.boundary),
-        silence=model.silence,
-        aliases=aliases_for(model.kind, model.phonemes, model.aliases),
-    )
+    return PhoneSet(kind=model.kind, phonemes=model.phonemes, classes=model.classes,
+                    viseme_class=tuple(int(c) for c in model.viseme_class),
+                    boundary=tuple(bool(b) for b in model.boundary), silence=model.silence,
+                    aliases=aliases_for(model.kind, model.phonemes, model.aliases))
 
 
-def read_stream(
-    path: Union[str, os.PathLike[str]], model: Model, labels: str = AUTO, source: Optional[str] = None,
-    tier: Optional[str] = None
-) -> Stream:
+def read_stream(path: PathLike, model: Model, labels: str = AUTO, source: Optional[str] = None,
+                tier: Optional[str] = None) -> Stream:
     """Reads phoneme timings of the format `source`, or of any that :func:`read_timings` tells; gaps are silence.
     `labels` is the set of the labels: "arpabet", "ipa", "xsampa" or "auto"; `tier` names the tier of a TextGrid.
 

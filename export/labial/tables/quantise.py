@@ -35,13 +35,10 @@ from labial.tables.phones import phone_set
 
 #: Version of the format.
 FORMAT = 7
-
 #: The library's limits.
 LIMITS = {"phonemes": 128, "classes": 32, "components": 8, "states": 64, "taps": 32, "reach": 20, "stride": 8}
-
 #: Steps after which a chain's state frequencies count as stationary.
 STATIONARY_STEPS = 2000
-
 #: Least standard deviation of a phoneme's duration, seconds, so that the gain fits its 16 bits.
 _DURATION_DEVIATION_MIN = 0.003
 
@@ -141,9 +138,8 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
     order = np.argsort(pair_keys)
     channels = solved(model.source)
     floor, floors, contacts = _floors(model, centre, channels)
-    positions = _positions(
-        model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]), "state_mean"
-    )
+    positions = _positions(model.state_mean - (centre[:, None, None] / POSITION_SCALE) * np.array([1.0, 0.0, 0.0]),
+                           "state_mean")
     motion, motion_scale = _motion(model.state_mean[..., 1:] * POSITION_SCALE)
     hold, weights, firm = state_weights(model, scaled(motion, motion_scale))
     names = phone_set(model)

@@ -15,9 +15,8 @@ VISEMES: Mapping[str, Tuple[str, ...]] = {
 }  # fmt: skip
 #: The viseme of each phoneme; without /HH/.
 VISEME_OF: Mapping[str, str] = {phoneme: viseme for viseme, members in VISEMES.items() for phoneme in members}
-
-#: A share of one in the C library, and its mark of a phoneme that has no viseme.
-ONE, NONE = 128, 255
+#: A share of one in the C library.
+ONE = 128
 
 
 class Dominance(NamedTuple):
@@ -39,7 +38,6 @@ DOMINANCES: Mapping[str, Dominance] = {
 }  # fmt: skip
 #: Milliseconds from which on no sound counts.
 AROUND = 120
-
 #: FAP 44, 45 and 46 of each viseme (docs/method.md).
 TONGUES: Dict[str, Tuple[int, int, int]] = {
     "sil": (0, 0, 0), "PP": (0, 0, 0), "FF": (0, 0, 0), "TH": (160, 240, 40), "DD": (400, 60, 80),

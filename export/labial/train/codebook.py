@@ -17,29 +17,22 @@ from scipy.spatial import cKDTree
 
 #: A split moves the two halves by this share of the cell's standard deviation, along its widest feature.
 SPLIT = 0.5
-
 #: Lloyd's iteration ends when the distortion falls by less than this share, or after MAXIMUM_ITERATIONS. Before the
 #: last split a rougher solution does as well.
 TOLERANCE = 1e-4
 ROUGH_TOLERANCE = 1e-2
 MAXIMUM_ITERATIONS = 60
-
 #: A relative bound far above the rounding error of a distance.
 _ROUNDING = 1e-9
-
 #: Points whose distances to all centres are computed at once.
 _BLOCK = 1024
-
 #: Centres near a point's own that are tracked separately; all others count as far as the next one.
 _NEAR = 4
-
 #: Least variance of a state, as a share of the feature's variance over the corpus.
 VARIANCE_FLOOR = 1e-3
-
 #: Transitions and starts that were never counted have probability 0, except those that keep every state reachable: to
 #: itself and to its neighbours in static mean, which get this count in addition.
 NEIGHBOUR_COUNT = 0.5
-
 #: Added to the starts of every state, in proportion to the state's frequency.
 INITIAL_COUNT = 5.0
 
@@ -151,9 +144,8 @@ def _means(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray,
     return count, total / np.maximum(count, 1)[:, None]
 
 
-def lloyd(
-    points: np.ndarray, centres: np.ndarray, tolerance: float = TOLERANCE
-) -> Tuple[np.ndarray, np.ndarray, float]:
+def lloyd(points: np.ndarray, centres: np.ndarray,
+          tolerance: float = TOLERANCE) -> Tuple[np.ndarray, np.ndarray, float]:
     """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance.
 
     A centre that loses all its points moves beside the centre of the cell with the largest distortion, which it splits.
@@ -237,14 +229,8 @@ def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: in
     return result
 
 
-def train_channel(
-    motion: Sequence[np.ndarray],
-    starts: Sequence[np.ndarray],
-    size: int,
-    stride: int = 1,
-    divide: Division = lbg,
-    normalised: bool = True,
-) -> Codebook:
+def train_channel(motion: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int, stride: int = 1,
+                  divide: Division = lbg, normalised: bool = True) -> Codebook:
     """The codebook of one channel.
 
     `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
@@ -265,10 +251,5 @@ def train_channel(
     rank[order] = np.arange(size)
     ends = np.cumsum([len(item) for item in motion])[:-1]
     paths: List[np.ndarray] = np.split(rank[cell], ends)
-    return Codebook(
-        mean=mean[order],
-        variance=variance[order],
-        count=count[order],
-        log_transition=transitions(paths, size, stride),
-        log_initial=initials(paths, starts, size),
-    )
+    return Codebook(mean=mean[order], variance=variance[order], count=count[order],
+                    log_transition=transitions(paths, size, stride), log_initial=initials(paths, starts, size))

@@ -1,46 +1,48 @@
-"""Closures: how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v.
+"""Closures, how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v; and protrusion.
 
 A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. So the
 target in such a phoneme does not fall below a *floor*, the mean pose of people. In no phoneme does the target fall
 below a value that people hardly ever reach: protrusion ends at lips at rest, which a sum of curves does not respect.
+
+FAP 17 is a function of the corners (docs/method.md, Protrusion): the lips protrude as far as the corners come in. How
+far is an isotonic regression on the recordings that teach FAP 17, as a table with linear pieces. A model's corners
+do not move as theirs do, but the table is asked for them: so it is stretched until the model protrudes its lips as far
+as AMPLITUDE says.
 """
 
 from __future__ import annotations
 
-from typing import Dict, List, Mapping, Sequence, Tuple
+from dataclasses import replace
+from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
+from scipy.optimize import brentq
+from sklearn.isotonic import IsotonicRegression
 
 from labial.corpus.phonesets import PhoneSet
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.reference.stream import synthesise
 from labial.reference.tables import FloatTables
+from labial.tables.followers import CORNERS, FAP_17, FROM_CORNERS, VALUES, interpolated
 from labial.tables.model import Model, widened
 from labial.train.recordings import Recording, taught
 from labial.train.workers import Workers
 
 #: Viseme classes that make contact, and their FAPs: those that lower the upper lip, and those that raise the lower lip.
 CONTACTS = {"bilabial": (51, 52, 55, 56, 57, 58), "labiodental": (52, 57, 58)}
-
 #: The same of laughter, where air goes through the nose. These lips rest on each other without pressure: they have no
 #: floor, but follow their target alone, so that the memory of the states does not open them.
 HELD = {"nose": (51, 52, 55, 56, 57, 58)}
-
 #: Seconds around the segment in which contact is searched, the usual error of alignments.
 MARGIN = 0.04
-
 #: The percentile of all human frames that is the lowest target of any phoneme.
 LEAST = 1.0
-
 #: FAPs that come to rest in a pause, where a phone set makes contacts: all but protrusion.
 RESTING = (3, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60)
-
 #: The rest position comes from frames of pauses at least this far from speech, seconds.
 AWAY = 0.2
-
 #: The weight of a frame in contact: times the median over a channel's states.
 FIRMNESS = 2.0
-
 #: The share of a class's occurrences, those that close most, whose mean pose is the floor. Lips press in p, b, m, as in
 #: the firmer half of people's; for the teeth in f, v all count but the tenth with the largest error of timing.
 FIRMEST = {"bilabial": 0.5, "labiodental": 0.9}
@@ -109,36 +111,29 @@ def _rest(material: Sequence[Recording], silence: int, away: int, least: np.ndar
 
 #: Standard deviation of the synthetic over that of the human motion, on the training part, that every channel is
 #: brought to. On held-out episodes it comes out at .85 in jaw and lower lip, .82 in the top lip's protrusion, .81 in
-#: the corners, which get CORNERS instead: where they rest in an utterance is learnt from it and not known of another.
+#: the corners, which get CORNERS_AMPLITUDE instead: where they rest in an utterance is learnt from it and not known of
+#: another.
 AMPLITUDE = 0.84
-CORNERS = 0.86
-
+CORNERS_AMPLITUDE = 0.86
 #: The same where talkers are random effects: the mean over talkers, each in his own units and on his own phonemes.
 SHARED = 1.0
-
 #: So many frames tell half of what a talker's recordings can tell of the scale that talkers share.
 HALF = 500.0
-
 #: Episodes of a talker for measuring it, and the range of gains where talkers are random effects.
 OF_TALKER = 25
 SHARED_GAINS = (0.25, 6.0)
-
 #: Episodes for measuring it.
 EPISODES = 160
-
 #: The percentiles that the middle of a channel's range lies between.
 RANGE = (5.0, 95.0)
-
 #: Largest gain; the least is 1.
 LARGEST_GAIN = 3.0
 
 
-def gains(
-    model: Model, material: Sequence[Recording], workers: Workers
-) -> Tuple[np.ndarray, np.ndarray]:
+def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tuple[np.ndarray, np.ndarray]:
     """The gain of each channel (13,), with which the model's motion outside silence reaches AMPLITUDE, in the corners
-    CORNERS, and the pose (13,), FAP, about which it is to be widened."""
-    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS, AMPLITUDE)
+    CORNERS_AMPLITUDE, and the pose (13,), FAP, about which it is to be widened."""
+    goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS_AMPLITUDE, AMPLITUDE)
     items = chosen(material)
     silence = model.phonemes.index(model.silence)
     sounding = np.concatenate([item.phoneme_at() != silence for item in items])
@@ -158,9 +153,8 @@ def gains(
     return gain, middle
 
 
-def shared_gains(
-    model: Model, material: Sequence[Recording], workers: Workers, counts: Mapping[str, float]
-) -> Tuple[np.ndarray, np.ndarray]:
+def shared_gains(model: Model, material: Sequence[Recording], workers: Workers,
+                 counts: Mapping[str, float]) -> Tuple[np.ndarray, np.ndarray]:
     """The gain of each channel (13,) with which the model moves SHARED times as far as talkers do, and the pose (13,),
     FAP, about which it is to be widened. How far is the standard deviation within utterances, outside silence; the
     model's on a talker's phonemes is divided by his own in his own units, and the quotients' geometric mean is taken
@@ -193,9 +187,8 @@ def shared_gains(
     return gain, middle
 
 
-def within(
-    motion: Sequence[np.ndarray], learnt: Sequence[np.ndarray], names: Sequence[str]
-) -> Dict[str, Tuple[np.ndarray, np.ndarray]]:
+def within(motion: Sequence[np.ndarray], learnt: Sequence[np.ndarray],
+           names: Sequence[str]) -> Dict[str, Tuple[np.ndarray, np.ndarray]]:
     """By talker, the standard deviations (13,) of his utterances' motion (T, 13) about their means, of the values that
     `learnt` (T, 13) selects, and how many (13,) they are."""
     squares: Dict[str, np.ndarray] = {}
@@ -225,3 +218,72 @@ def motion_of(task: Tuple[Model, Recording]) -> np.ndarray:
     bounds = np.rint(np.cumsum(item.length) * 1000 / model.fps).astype(int)
     durations = np.diff(bounds, prepend=0)
     return synthesise(FloatTables(model), [(int(p), int(ms)) for p, ms in zip(item.phoneme, durations)])
+
+
+#: Where the table explains less of FAP 17 than this correlation, that stays a channel.
+LEAST_CORRELATION = 0.85
+#: The percentiles of the corners' mean that the table spans: beyond there are too few values to tell.
+SPAN = (0.1, 99.9)
+#: How far the table is stretched at most.
+STRETCH = (0.5, 2.0)
+
+
+def table(corners: np.ndarray, protrusion: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """The range (2,) of the corners' mean and the values (17,) over it that fit `protrusion` (T,) best for `corners`
+    (T,), all FAP; they fall all along."""
+    ends = np.percentile(corners, SPAN)
+    smooth = IsotonicRegression(increasing=False, out_of_bounds="clip").fit(corners, protrusion)
+    place = np.clip((corners - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (VALUES - 1)
+    nearest = np.abs(place[:, None] - np.arange(VALUES))
+    share = np.maximum(1.0 - nearest, 0.0)  # of each value in the interpolation
+    count = share.sum(axis=0)
+    prior = smooth.predict(np.linspace(ends[0], ends[1], VALUES))  # of values that next to nothing tells
+    values = np.linalg.solve(share.T @ share + np.eye(VALUES), share.T @ smooth.predict(corners) + prior)
+    values = IsotonicRegression(increasing=False).fit_transform(np.arange(VALUES), values, sample_weight=count + 1.0)
+    return ends, values
+
+
+def with_protrusion(model: Model, material: Sequence[Recording], workers: Workers) -> Model:
+    """The model with FAP 17 computed of its corners, or as it is where `material` does not tell how."""
+    needed = [FAP_17, *CORNERS]
+    teaching = [item for item in material if (item.weights[:, needed] > 0).all(axis=1).any()]
+    frames = [item.frames[(item.weights[:, needed] > 0).all(axis=1)] for item in teaching]
+    if not frames:
+        return model
+    human = np.concatenate(frames)
+    mean = human[:, CORNERS].mean(axis=1)
+    if min(mean.std(), human[:, FAP_17].std()) < 1e-6:
+        return model
+    ends, values = table(mean, human[:, FAP_17])
+    told = interpolated(human[:, CORNERS], ends, values)
+    if not np.corrcoef(told, human[:, FAP_17])[0, 1] >= LEAST_CORRELATION:
+        return model
+    own = _stretched(model, chosen(teaching), workers, ends, values)
+    if own is None:
+        return model
+    source = model.source.copy()
+    source[FAP_17] = FROM_CORNERS
+    return replace(model, protrusion=np.round(values, 3), protrusion_range=np.round(own, 3), source=source)
+
+
+def _stretched(model: Model, material: Sequence[Recording], workers: Workers, ends: np.ndarray,
+               values: np.ndarray) -> Optional[np.ndarray]:
+    """The range (2,) over which the model's FAP 17 moves by AMPLITUDE of the recordings', outside silence; it is
+    stretched about the mean of the model's corners."""
+    silence = model.phonemes.index(model.silence)
+    learnt = np.concatenate([(item.phoneme_at() != silence) & (item.weights[:, FAP_17] > 0) for item in material])
+    if not learnt.any():
+        return None
+    human = np.concatenate([item.frames[:, FAP_17] for item in material])[learnt]
+    motion = workers.run("protrusion", motion_of, [(model, item) for item in material])
+    made = np.concatenate(motion)[learnt][:, CORNERS]
+    middle = made.mean()
+
+    def excess(stretch: float) -> float:
+        moved = interpolated(made, middle + (ends - middle) * stretch, values)
+        return float(moved.std() - AMPLITUDE * human.std())
+
+    low, high = (excess(stretch) for stretch in STRETCH)
+    stretch = brentq(excess, *STRETCH) if low * high < 0 else STRETCH[int(abs(high) < abs(low))]
+    result: np.ndarray = middle + (ends - middle) * stretch
+    return result

@@ -49,16 +49,12 @@ from labial.train.recordings import Recording
 #: The taps reach this far to each side and are this far apart, in seconds.
 REACH = 0.36
 SPACING = 0.04
-
 #: Limit of the reach, in frames: the device's LABIAL_REACH.
 REACH_FRAMES = LIMITS["reach"]
-
 #: Frames that the regression reads at once, some 2.5 KB each.
 BLOCK = 65536
-
 #: Least occurrences of a pair with its own correction, regardless of their weights.
 PAIR_COUNT = 20
-
 #: Knots of a pair: one for a constant shape, two for one that changes from the phoneme's start to its end.
 PAIR_KNOTS = 2
 
@@ -110,16 +106,8 @@ def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np
     return np.concatenate(codes)
 
 
-def _design(
-    material: Sequence[Recording],
-    choice: Choice,
-    deviation: np.ndarray,
-    phonemes: int,
-    lag: np.ndarray,
-    silence: int,
-    pairs: np.ndarray,
-    knots: int,
-) -> csr_matrix:
+def _design(material: Sequence[Recording], choice: Choice, deviation: np.ndarray, phonemes: int, lag: np.ndarray,
+            silence: int, pairs: np.ndarray, knots: int) -> csr_matrix:
     """(T, P L + 2 N + R K) of all frames: one-hot taps, shares of the components, those times (d - mu_c) / sigma_c, and
     the shares of the knots of those `pairs` (R,), codes, that the phoneme and its neighbours are.
 
@@ -128,9 +116,8 @@ def _design(
     taps, components = len(lag), len(deviation)
     column = np.concatenate([tapped(item.phoneme_at(), lag, silence) for item in material]) * taps + np.arange(taps)
     rows = len(column)
-    onehot = csr_matrix(
-        (np.ones(column.size), column.ravel(), np.arange(rows + 1) * taps), shape=(rows, phonemes * taps)
-    )
+    onehot = csr_matrix((np.ones(column.size), column.ravel(), np.arange(rows + 1) * taps),
+                        shape=(rows, phonemes * taps))
     occurrences, width = choice.share.shape
     start = np.arange(occurrences + 1) * width
 
@@ -165,9 +152,8 @@ class _Block:
         return np.concatenate([item.frames for item in self.material])
 
 
-def _blocks(
-    material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties, fps: int
-) -> Iterator[_Block]:
+def _blocks(material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties,
+            fps: int) -> Iterator[_Block]:
     """The material in blocks of `BLOCK` frames, which limits memory."""
     first = occurrence = frames = 0
     for last, item in enumerate(material, 1):
@@ -283,9 +269,8 @@ class Regression:
         kernels = slice(0, taps)
         prior[kernels, kernels] = self.penalties.kernel * kernel_prior(self.viseme_class, len(self.lag), self.penalties)
         index = np.arange(taps, len(prior))
-        prior[index, index] = np.repeat(
-            [self.penalties.shape, self.penalties.slope, self.penalties.pair], [components, components, knots]
-        )
+        prior[index, index] = np.repeat([self.penalties.shape, self.penalties.slope, self.penalties.pair],
+                                        [components, components, knots])
         return prior
 
     def sums(self, material: Sequence[Recording], choice: Choice, base: np.ndarray) -> List[_Sums]:
@@ -328,18 +313,9 @@ class Regression:
         return substitute(fitted, self.stand_in)
 
 
-def regression(
-    material: Sequence[Recording],
-    tables: ShapeTables,
-    viseme_class: np.ndarray,
-    stand_in: Sequence[int],
-    silence: int,
-    fps: int,
-    penalties: Penalties,
-    look_ahead: float = LOOK_AHEAD,
-    knots: int = PAIR_KNOTS,
-    pair_count: int = PAIR_COUNT,
-) -> Regression:
+def regression(material: Sequence[Recording], tables: ShapeTables, viseme_class: np.ndarray, stand_in: Sequence[int],
+               silence: int, fps: int, penalties: Penalties, look_ahead: float = LOOK_AHEAD, knots: int = PAIR_KNOTS,
+               pair_count: int = PAIR_COUNT) -> Regression:
     """The columns for `material`, of whose pairs those that occur at least `pair_count` times. `viseme_class` is (P,),
     `stand_in` (P,) the phoneme whose mixture each phoneme uses, mostly itself; `look_ahead` is in seconds; `knots` is
     K."""
@@ -361,9 +337,8 @@ def fit_kernels(asked: Regression, material: Sequence[Recording], choice: Choice
     return asked.kernels(solution, base)
 
 
-def targets_without_floors(
-    choice: Choice, own: Sequence[Kernels], material: Sequence[Recording], silence: int
-) -> List[np.ndarray]:
+def targets_without_floors(choice: Choice, own: Sequence[Kernels], material: Sequence[Recording],
+                           silence: int) -> List[np.ndarray]:
     """The targets (T, 13) of recordings, FAP, each by kernels of its `own`, before floors and contact; `choice` is that
     of the occurrences of `material`."""
     result, first = [], 0

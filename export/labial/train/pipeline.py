@@ -19,9 +19,8 @@ from labial.reference.shape import ShapeTables, choose
 from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model, widened
 from labial.tables.quantise import LIMITS
-from labial.train.adapt import about_talkers
 from labial.train.codebook import Codebook, Division, lbg, train_channel
-from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains
+from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains, with_protrusion
 from labial.train.kernels import (
     PAIR_KNOTS,
     REACH,
@@ -32,7 +31,6 @@ from labial.train.kernels import (
     regression,
     targets_without_floors,
 )
-from labial.train.protrusion import with_protrusion
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_context, fit_mixture, shape_tables
 from labial.train.states import (
@@ -47,7 +45,15 @@ from labial.train.states import (
     decode,
     match_states,
 )
-from labial.train.talkers import check_variance, counted_once, fit_talkers, pair_count_of, penalties_of, weights_of
+from labial.train.talkers import (
+    about_talkers,
+    check_variance,
+    counted_once,
+    fit_talkers,
+    pair_count_of,
+    penalties_of,
+    weights_of,
+)
 from labial.train.workers import Workers
 
 #: Utterances that are decoded at once.
@@ -132,9 +138,7 @@ def _mixture(task: _MixtureTask) -> Mixture:
     return mixture
 
 
-def _mixture_tasks(
-    items: Occurrences, plan: Plan, classes: int, components: int, seed: int
-) -> List[_MixtureTask]:
+def _mixture_tasks(items: Occurrences, plan: Plan, classes: int, components: int, seed: int) -> List[_MixtureTask]:
     """The mixtures to fit. All samples count alike, since weights did not improve the relation of durations and
     neighbours, which only the mixtures determine."""
     vectors, learnt = items.vectors(), items.learnt
@@ -181,9 +185,8 @@ def _unit_starts(item: Recording, boundary: np.ndarray) -> np.ndarray:
     return result
 
 
-def _stretches(
-    material: Sequence[Recording], starts: Sequence[np.ndarray], channel: int
-) -> Tuple[List[np.ndarray], List[np.ndarray]]:
+def _stretches(material: Sequence[Recording], starts: Sequence[np.ndarray],
+               channel: int) -> Tuple[List[np.ndarray], List[np.ndarray]]:
     """The stretches of one channel's motion (T,) for training, and the frames at which units begin in each."""
     motion, begins = [], []
     for item, start in zip(material, starts):
@@ -195,11 +198,9 @@ def _stretches(
     return motion, begins
 
 
-def _setting(
-    kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int, look_ahead: float,
-    search_stride: int, divide: Division, normalise: bool, talker_variance: Optional[float] = None,
-    symmetric: bool = True,
-) -> _Setting:
+def _setting(kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int,
+             look_ahead: float, search_stride: int, divide: Division, normalise: bool,
+             talker_variance: Optional[float] = None, symmetric: bool = True) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
     if method not in METHODS:
@@ -286,10 +287,8 @@ def _material(corpus: Sequence[Episode], setting: _Setting) -> Tuple[List[Record
     return material, counts
 
 
-def _fit_shapes(
-    setting: _Setting, material: Sequence[Recording], talkers: Dict[str, float], items: Occurrences, plan: Plan,
-    workers: Workers,
-) -> _Shapes:
+def _fit_shapes(setting: _Setting, material: Sequence[Recording], talkers: Dict[str, float], items: Occurrences,
+                plan: Plan, workers: Workers) -> _Shapes:
     """Mixtures, and beyond the published method kernels, pairs, floors and contact."""
     phonemes, classes = len(setting.phone_set.phonemes), len(setting.phone_set.classes)
     tasks = _mixture_tasks(items, plan, classes if setting.extended else 0, setting.components, setting.seed)
@@ -300,11 +299,9 @@ def _fit_shapes(
         return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
     floor, contact = floors(material, setting.phone_set, setting.fps)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    asked = regression(
-        material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
-        _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
-        pair_count_of(setting.talker_variance),
-    )
+    asked = regression(material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
+                       _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
+                       pair_count_of(setting.talker_variance))
     if setting.talker_variance is None:
         kernels = fit_kernels(asked, material, choice)
         own = [kernels] * len(material)
@@ -317,9 +314,7 @@ def _fit_shapes(
     return _Shapes(kernels, floor, contact, targets)
 
 
-def _fit_states(
-    setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers
-) -> StateTables:
+def _fit_states(setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers) -> StateTables:
     """Codebooks, and beyond the published method states matched to what is decoded from the targets. Those of channels
     that follow others are theirs."""
     own = solved(setting.source)
@@ -331,9 +326,8 @@ def _fit_states(
     return replace(states, **tables)
 
 
-def _fit_solved(
-    setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers, own: np.ndarray
-) -> StateTables:
+def _fit_solved(setting: _Setting, material: Sequence[Recording], shaped: _Shapes, workers: Workers,
+                own: np.ndarray) -> StateTables:
     """The states of the channels `own` (C,), in the order in which they take turns in the run-time."""
     starts = [_unit_starts(item, setting.boundary) for item in material]
     if shaped.targets is not None and setting.tracking:
@@ -361,9 +355,7 @@ def _fit_solved(
     return match(states, paths, targets, [item.frames[:, own] for item in material], weights, setting.scales)
 
 
-def _training(
-    setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan
-) -> Dict[str, object]:
+def _training(setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan) -> Dict[str, object]:
     """The model's record of its training."""
     training: Dict[str, object] = {
         **_extent(material, setting.silence),
@@ -383,73 +375,28 @@ def _training(
     return training
 
 
-def _model(
-    setting: _Setting, shaped: _Shapes, states: StateTables, plan: Plan, attribution: str, training: Dict[str, object]
-) -> Model:
-    phone_set, kernels, tables = setting.phone_set, shaped.kernels, shaped.kernels.tables
+def _model(setting: _Setting, shaped: _Shapes, states: StateTables, plan: Plan, attribution: str,
+           training: Dict[str, object]) -> Model:
+    phone_set, kernels = setting.phone_set, shaped.kernels
     hold = np.median(states.state_precision[..., 0] + states.state_anchor, axis=1)
-    model = Model(
-        kind=phone_set.kind,
-        method="labial" if setting.extended else "paper",
-        fps=setting.fps,
-        phonemes=phone_set.phonemes,
-        classes=phone_set.classes,
-        silence=phone_set.silence,
-        soft=setting.extended,
-        search_stride=setting.stride,
-        viseme_class=setting.viseme_class,
-        boundary=setting.boundary,
-        component_count=tables.component_count,
-        log_weight=tables.log_weight,
-        duration_mean=tables.duration_mean,
-        duration_variance=tables.duration_variance,
-        shape=tables.shape,
-        slope=tables.slope,
-        log_previous=tables.log_previous,
-        log_next=tables.log_next,
-        kernel=kernels.kernel,
-        kernel_lag=kernels.lag,
-        pair_key=kernels.pair_key,
-        pair_shape=kernels.pair_shape,
-        floor=shaped.floor,
-        contact=shaped.contact,
-        firm=FIRMNESS * hold * shaped.contact.any(axis=0),
-        emission_mean=states.emission_mean,
-        emission_variance=states.emission_variance,
-        state_mean=states.state_mean,
-        state_precision=states.state_precision,
-        state_anchor=states.state_anchor,
-        log_transition=states.log_transition,
-        log_initial=states.log_initial,
-        substitutes=dict(plan.substitutes),
-        attribution=attribution,
-        training=training,
-    )
+    tables = {**vars(kernels.tables), **vars(states)}
+    model = Model(kind=phone_set.kind, method="labial" if setting.extended else "paper", fps=setting.fps,
+                  phonemes=phone_set.phonemes, classes=phone_set.classes, silence=phone_set.silence,
+                  soft=setting.extended, search_stride=tables.pop("stride"), viseme_class=setting.viseme_class,
+                  boundary=setting.boundary, kernel=kernels.kernel, kernel_lag=kernels.lag, pair_key=kernels.pair_key,
+                  pair_shape=kernels.pair_shape, floor=shaped.floor, contact=shaped.contact,
+                  firm=FIRMNESS * hold * shaped.contact.any(axis=0), substitutes=dict(plan.substitutes),
+                  attribution=attribution, training=training, **tables)
     same = {name: getattr(model, name)[..., setting.source]  # but for rounding, where both sides learnt the same
             for name in ("shape", "slope", "kernel", "pair_shape", "floor", "contact", "firm")}
     return replace(model, **same, source=setting.source)
 
 
-def train(
-    corpus: Sequence[Episode],
-    *,
-    kind: str,
-    method: str,
-    fps: int = FPS,
-    codebook: Optional[int] = None,
-    components: Optional[int] = None,
-    seed: int = 0,
-    jobs: int = 2,
-    engine: Optional[str] = None,
-    progress: bool = True,
-    attribution: str = "",
-    look_ahead: float = LOOK_AHEAD,
-    search_stride: int = SEARCH_STRIDE,
-    divide: Division = lbg,
-    normalise: bool = False,
-    talker_variance: Optional[float] = None,
-    symmetric: bool = True,
-) -> Model:
+def train(corpus: Sequence[Episode], *, kind: str, method: str, fps: int = FPS, codebook: Optional[int] = None,
+          components: Optional[int] = None, seed: int = 0, jobs: int = 2, engine: Optional[str] = None,
+          progress: bool = True, attribution: str = "", look_ahead: float = LOOK_AHEAD,
+          search_stride: int = SEARCH_STRIDE, divide: Division = lbg, normalise: bool = False,
+          talker_variance: Optional[float] = None, symmetric: bool = True) -> Model:
     """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
 
     `method` is "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,

@@ -84,17 +84,12 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
         for start, end in episode.unseen(phone_set.silence):
             missing |= (centre > start) & (centre < end)
         result.append(
-            Recording(
-                name=episode.name,
-                phoneme=phoneme,
-                duration=np.array([episode.segments[index].duration for index in seen]),
-                length=length,
-                apex=resampled.apex[seen],
-                frames=resampled.motion,
-                weight=_weights(episode.source, np.repeat(phoneme, length) == silence, missing),
-                talker=episode.source.talker,
-                stretch=np.array(episode.source.stretch) if episode.source.stretch else None,
-            )
+            Recording(name=episode.name, phoneme=phoneme,
+                      duration=np.array([episode.segments[index].duration for index in seen]), length=length,
+                      apex=resampled.apex[seen], frames=resampled.motion,
+                      weight=_weights(episode.source, np.repeat(phoneme, length) == silence, missing),
+                      talker=episode.source.talker,
+                      stretch=np.array(episode.source.stretch) if episode.source.stretch else None)
         )
     if not result:
         raise LabialError("the corpus holds no episode that is long enough to train on")
@@ -120,14 +115,8 @@ def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Reco
             rows.append((phoneme, milliseconds / 1000.0, frames, apex if begin <= apex < begin + frames else middle))
             begin += frames
     phonemes, durations, lengths, apexes = zip(*rows)
-    return replace(
-        item,
-        phoneme=np.array(phonemes, dtype=np.int64),
-        duration=np.array(durations, dtype=np.float64),
-        length=np.array(lengths, dtype=np.int64),
-        apex=np.array(apexes, dtype=np.int64),
-        resting=resting,
-    )
+    return replace(item, phoneme=np.array(phonemes, dtype=np.int64), duration=np.array(durations, dtype=np.float64),
+                   length=np.array(lengths, dtype=np.int64), apex=np.array(apexes, dtype=np.int64), resting=resting)
 
 
 def _weights(source: Source, silent: np.ndarray, missing: np.ndarray) -> Optional[np.ndarray]:
@@ -170,11 +159,9 @@ def occurrences(material: List[Recording], phone_set: PhoneSet) -> Occurrences:
     silence = phone_set.phonemes.index(phone_set.silence)
     viseme_class = np.asarray(phone_set.viseme_class, dtype=np.int64)
     around = [neighbour_classes(item.phoneme, viseme_class, silence) for item in material]
-    return Occurrences(
-        phoneme=np.concatenate([item.phoneme for item in material]),
-        duration=np.concatenate([item.duration for item in material]),
-        previous=np.concatenate([before for before, _ in around]),
-        next=np.concatenate([after for _, after in around]),
-        apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
-        learnt=np.concatenate([item.weights[item.apex].any(axis=1) for item in material]),
-    )
+    return Occurrences(phoneme=np.concatenate([item.phoneme for item in material]),
+                       duration=np.concatenate([item.duration for item in material]),
+                       previous=np.concatenate([before for before, _ in around]),
+                       next=np.concatenate([after for _, after in around]),
+                       apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
+                       learnt=np.concatenate([item.weights[item.apex].any(axis=1) for item in material]))

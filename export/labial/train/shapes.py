@@ -27,13 +27,10 @@ from labial.reference.shape import ShapeTables
 
 #: Samples per component: a full covariance of 14 dimensions needs about as many.
 SAMPLES_PER_COMPONENT = 15
-
 #: Least samples of a phoneme's own mixture.
 MINIMUM_SAMPLES = 10
-
 #: Added to the diagonal of every covariance of scaled vectors, whose variances over the corpus are 1.
 REGULARISATION = 0.02
-
 #: The time axis of a training vector.
 DURATION = CHANNELS
 
@@ -69,13 +66,8 @@ def fit_mixture(vectors: np.ndarray, scale: np.ndarray, components: int, seed: i
         warnings.simplefilter("ignore", ConvergenceWarning)  # repeated vectors leave fewer clusters than components
         model.fit(scaled if len(scaled) > 1 else np.repeat(scaled, 2, axis=0))
     none = np.zeros((count, 0))
-    return Mixture(
-        weight=model.weights_,
-        mean=model.means_ * scale,
-        covariance=model.covariances_ * scale[:, None] * scale[None, :],
-        log_previous=none,
-        log_next=none,
-    )
+    return Mixture(weight=model.weights_, mean=model.means_ * scale,
+                   covariance=model.covariances_ * scale[:, None] * scale[None, :], log_previous=none, log_next=none)
 
 
 @dataclass(frozen=True)
@@ -128,16 +120,11 @@ def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
     mean, covariance = joined("mean"), joined("covariance")
     variance = covariance[:, DURATION, DURATION]
     slope = covariance[:, :CHANNELS, DURATION] / variance[:, None]
-    return ShapeTables(
-        component_count=np.array([len(mixture.weight) for mixture in mixtures], dtype=np.int64),
-        log_weight=np.log(np.maximum(joined("weight"), 1e-12)),
-        duration_mean=mean[:, DURATION].copy(),
-        duration_variance=variance.copy(),
-        shape=mean[:, :CHANNELS].copy(),
-        slope=slope if conditional else np.zeros_like(slope),
-        log_previous=joined("log_previous"),
-        log_next=joined("log_next"),
-    )
+    return ShapeTables(component_count=np.array([len(mixture.weight) for mixture in mixtures], dtype=np.int64),
+                       log_weight=np.log(np.maximum(joined("weight"), 1e-12)), duration_mean=mean[:, DURATION].copy(),
+                       duration_variance=variance.copy(), shape=mean[:, :CHANNELS].copy(),
+                       slope=slope if conditional else np.zeros_like(slope), log_previous=joined("log_previous"),
+                       log_next=joined("log_next"))
 
 
 # ---- Context-aware mixtures ------------------------------------------------------------------------------------------
@@ -146,10 +133,8 @@ WEIGHT_PRIOR = 1.0
 CLASS_PRIOR = 0.1
 COVARIANCE_PRIOR = 3.0
 COVARIANCE_SHRINK = 0.5
-
 #: The least log-probability of a class: the device's tables end at 255 / 32 nats below the best.
 LOG_FLOOR = -7.9
-
 #: EM stops at a gain below this, in nats per sample, or after MAXIMUM_ITERATIONS.
 TOLERANCE = 1e-4
 MAXIMUM_ITERATIONS = 200
@@ -223,13 +208,9 @@ def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
         offset = samples.vectors - centre
         scatter = (responsibility[:, c, None] * offset).T @ offset
         covariance[c] = (scatter + COVARIANCE_PRIOR * prior) / (total[c] + COVARIANCE_PRIOR)
-    return Mixture(
-        weight=weight,
-        mean=mean,
-        covariance=covariance,
-        log_previous=_class_table(responsibility, samples.previous, samples.classes),
-        log_next=_class_table(responsibility, samples.next, samples.classes),
-    )
+    return Mixture(weight=weight, mean=mean, covariance=covariance,
+                   log_previous=_class_table(responsibility, samples.previous, samples.classes),
+                   log_next=_class_table(responsibility, samples.next, samples.classes))
 
 
 def expect(samples: Samples, mixture: Mixture) -> np.ndarray:
@@ -258,23 +239,17 @@ def _floored(log_table: np.ndarray) -> np.ndarray:
     return result
 
 
-def fit_context(
-    start: Mixture, vectors: np.ndarray, scale: np.ndarray, previous: np.ndarray, following: np.ndarray, classes: int
-) -> Mixture:
+def fit_context(start: Mixture, vectors: np.ndarray, scale: np.ndarray, previous: np.ndarray, following: np.ndarray,
+                classes: int) -> Mixture:
     """Fits the context-aware mixture of one phoneme from `start`, its mixture without context.
 
     `vectors` is (n, 14) in FAP and seconds, `scale` (14,) the corpus's standard deviations, `previous` and `following`
     (n,) the viseme classes of the neighbours, `classes` their number V.
     """
     samples = Samples(vectors / scale, previous, following, classes)
-    joint = np.log(start.weight) + log_normal(
-        samples.vectors, start.mean / scale, start.covariance / scale[:, None] / scale[None, :]
-    )
+    joint = np.log(start.weight) + log_normal(samples.vectors, start.mean / scale,
+                                              start.covariance / scale[:, None] / scale[None, :])
     fitted, _ = climb(samples, np.exp(joint - logsumexp(joint, axis=1, keepdims=True)))
-    return Mixture(
-        weight=fitted.weight,
-        mean=fitted.mean * scale,
-        covariance=fitted.covariance * scale[:, None] * scale[None, :],
-        log_previous=_floored(fitted.log_previous),
-        log_next=_floored(fitted.log_next),
-    )
+    return Mixture(weight=fitted.weight, mean=fitted.mean * scale,
+                   covariance=fitted.covariance * scale[:, None] * scale[None, :],
+                   log_previous=_floored(fitted.log_previous), log_next=_floored(fitted.log_next))

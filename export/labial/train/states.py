@@ -26,7 +26,6 @@ from labial.train.codebook import VARIANCE_FLOOR, Codebook, Division, features, 
 #: A state's statistics are joined with those of its codebook cell (means) and of all states (variances), which
 #: count as this many frames.
 PRIOR_FRAMES = 20.0
-
 #: Largest diagonal element of equation 3's matrix over the least of static + anchor, per channel. The device's weights
 #: carry WEIGHT_SUM_MAX / WEIGHT_MIN, a little more.
 DYNAMIC_RANGE = 2000.0
@@ -62,16 +61,10 @@ def codebook_tables(codebooks: Sequence[Codebook], stride: int) -> StateTables:
     """The paper's tables: the codebook's cells, without anchors."""
     mean = np.stack([book.mean for book in codebooks])
     variance = np.stack([book.variance for book in codebooks])
-    return StateTables(
-        emission_mean=mean[..., 0].copy(),
-        emission_variance=variance[..., 0].copy(),
-        state_mean=mean,
-        state_precision=1.0 / variance,
-        state_anchor=np.zeros(mean.shape[:2]),
-        log_transition=np.stack([book.log_transition for book in codebooks]),
-        log_initial=np.stack([book.log_initial for book in codebooks]),
-        stride=stride,
-    )
+    return StateTables(emission_mean=mean[..., 0].copy(), emission_variance=variance[..., 0].copy(), state_mean=mean,
+                       state_precision=1.0 / variance, state_anchor=np.zeros(mean.shape[:2]),
+                       log_transition=np.stack([book.log_transition for book in codebooks]),
+                       log_initial=np.stack([book.log_initial for book in codebooks]), stride=stride)
 
 
 def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: StateTables) -> List[np.ndarray]:
@@ -81,9 +74,8 @@ def decode(targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], tables: St
     return viterbi.decode(viterbi.normal_chains(*hidden), targets, ends, tables.stride)
 
 
-def state_moments(
-    values: np.ndarray, weight: np.ndarray, path: np.ndarray, prior_mean: np.ndarray
-) -> Tuple[np.ndarray, np.ndarray]:
+def state_moments(values: np.ndarray, weight: np.ndarray, path: np.ndarray,
+                  prior_mean: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Means and variances (Q,) of the values (n,), counting by weight (n,), under each state of the path (n,), with
     PRIOR_FRAMES."""
     size = len(prior_mean)
@@ -108,14 +100,8 @@ class DecodedChannel:
     floor: np.ndarray  #: (3,) the least variance
 
 
-def decoded_channel(
-    tables: StateTables,
-    channel: int,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-) -> DecodedChannel:
+def decoded_channel(tables: StateTables, channel: int, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                    human: Sequence[np.ndarray], weights: Sequence[np.ndarray]) -> DecodedChannel:
     """One channel of decoded paths, targets, human motion and its weights (T, C); copies are made of this one only."""
     states, target, motion, weight = (np.concatenate([item[:, channel] for item in items])
                                       for items in (paths, targets, human, weights))
@@ -127,14 +113,8 @@ def decoded_channel(
     return DecodedChannel(states, target, motion, weight, mean, variance, floor)
 
 
-def match_states(
-    tables: StateTables,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-    scales: Scales,
-) -> StateTables:
+def match_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                 human: Sequence[np.ndarray], weights: Sequence[np.ndarray], scales: Scales) -> StateTables:
     """The tables with means, precisions, anchors and transitions re-estimated on decoded paths (T, C) of targets and
     human motion (T, C) in FAP, whose values count by `weights` (T, C). The emissions of the search are unchanged."""
     count, size = tables.emission_mean.shape
@@ -177,11 +157,9 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
 
 #: Factors of precisions. Static and anchor share the precision from least squares.
 SCALES = Scales(static=1.0, delta=0.1, acceleration=0.1, anchor=1.0)
-
 #: How many times its variance a target is taken to stray: kernels overlap, so that targets of successive steps err
 #: alike and tell less than as many that err by themselves. Chosen, as the number of states, on corpora of other seeds.
 ALIKE = 2.0
-
 #: The least share of a state's hold that its mean or the target has.
 LEAST_SHARE = 0.02
 
@@ -220,13 +198,10 @@ def chain(task: ChannelTask) -> Chain:
     mean, variance = (np.stack(items, axis=1) for items in zip(*moments))
     seen, strayed = state_moments(targets, np.ones(len(cell)), cell, centres)
     paths = np.split(cell, np.cumsum([len(item) for item in task.motion])[:-1])
-    book = Codebook(
-        mean=mean,
-        variance=np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6)),
-        count=np.bincount(cell, minlength=task.size),
-        log_transition=transitions(paths, task.size, task.stride),
-        log_initial=initials(paths, task.begins, task.size),
-    )
+    book = Codebook(mean=mean, variance=np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6)),
+                    count=np.bincount(cell, minlength=task.size),
+                    log_transition=transitions(paths, task.size, task.stride),
+                    log_initial=initials(paths, task.begins, task.size))
     least = max(VARIANCE_FLOOR * float(overall[0]), 1e-6)
     return Chain(book, np.maximum.accumulate(seen), ALIKE * np.maximum(strayed, least))
 
@@ -238,14 +213,8 @@ def chain_tables(chains: Sequence[Chain], stride: int) -> StateTables:
                    emission_variance=np.stack([item.variance for item in chains]))
 
 
-def balance_states(
-    tables: StateTables,
-    paths: Sequence[np.ndarray],
-    targets: Sequence[np.ndarray],
-    human: Sequence[np.ndarray],
-    weights: Sequence[np.ndarray],
-    scales: Scales,
-) -> StateTables:
+def balance_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
+                   human: Sequence[np.ndarray], weights: Sequence[np.ndarray], scales: Scales) -> StateTables:
     """The tables with means, precisions and anchors estimated on decoded paths (T, 13) of targets and human motion
     (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees stays as it is.
 

@@ -21,7 +21,6 @@ from labial.errors import LabialError, needs
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
-
 #: Seconds to wait for a cluster's answer.
 _PATIENCE = 20
 

@@ -19,7 +19,6 @@ from labial.words.dictionary import LETTERS, PHONEMES, Entry
 #: Base of the numbers of pairs.
 PAIR = len(PHONEMES)
 SOUNDS = PAIR + PAIR * PAIR
-
 #: Rounds of learning; from which round on a pair must be expected so many times, and a single phoneme of a letter 3.
 _ROUNDS = 14
 _RARE_PAIRS = {6: 30.0, 9: 80.0}

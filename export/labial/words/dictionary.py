@@ -7,18 +7,15 @@ more than `LONGEST` letters, are left out: the trees have no letters for them.
 
 from __future__ import annotations
 
-import os
 import re
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple, Union
+from typing import Dict, List, Sequence, Tuple
 
 from labial.corpus.phonesets import ARPABET
-from labial.errors import DataError
+from labial.errors import DataError, PathLike
 from labial.files.grammar import lines_of, read_text
-
-PathLike = Union[str, os.PathLike[str]]
 
 #: A letter's number is its place here; 0 stands for "outside the word".
 LETTERS = "\0abcdefghijklmnopqrstuvwxyz'"
@@ -26,10 +23,8 @@ LETTERS = "\0abcdefghijklmnopqrstuvwxyz'"
 LONGEST = 32
 #: Phonemes by number: silence, then the 39 of ARPABET in the order of the alphabet, as in the bundled model.
 PHONEMES: Tuple[str, ...] = ("SIL", *ARPABET)
-
 #: The list of common words that comes with this package.
 COMMON = Path(__file__).with_name("common.txt")
-
 #: Most phonemes of a word: two for each letter.
 _PHONEMES_MOST = 2 * LONGEST
 _WORD = re.compile(r"[a-z']+")

@@ -17,14 +17,12 @@ _ORDINALS = {"one": "first", "two": "second", "three": "third", "five": "fifth",
 MONTHS = ("January February March April May June July August September October November December").split()
 DAYS = "Monday Tuesday Wednesday Thursday Friday Saturday Sunday".split()
 _MOST_DIGITS = 15
-
 #: Signs of money, the names of whole units and of their hundredths.
 _SIGNS = "$" + signs.EURO + signs.POUND + signs.YEN + signs.RUPEE
 CURRENCIES = ("dollar_", "euro_", "pound_", "yen", "rupee_")
 _HUNDREDTHS = ("cent_", "cent_", "penny|pence", "", "paisa|paise")
 _LETTER_SCALES = {"k": "thousand", "m": "million", "mn": "million", "b": "billion", "bn": "billion", "t": "trillion",
                   "tn": "trillion"}  # fmt: skip
-
 #: What ends a word: no letter and no digit.
 END = r"(?![A-Za-z0-9\1])"
 _WHOLE = re.compile(r"[0-9]+(?:,[0-9]{3}(?![0-9]))*")

@@ -8,10 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
-from labial.words import decoder
 from labial.words.characters import BLANK, Simple
 from labial.words.dictionary import PHONEMES
-from labial.words.tables import WordTables
+from labial.words.tables import WordTables, read
 
 NAMES: Dict[str, str] = dict(zip("abcdefghijklmnopqrstuvwxyz", (
     "ay bee see dee e eff jee aitch eye jay kay ell em en oh pee cue are ess tee you vee double_you ex why zee"
@@ -62,7 +61,7 @@ class Said:
               sounds: Sequence[Optional[Tuple[str, ...]]] = ()) -> None:
         """Adds a spoken word, whose letter i belongs to the simple character ``place_of(i)``."""
         first = True
-        for phoneme, letter in decoder.read(self.tables, word, sounds):
+        for phoneme, letter in read(self.tables, word, sounds):
             self.add(phoneme, place_of(letter), first)
             first = False
 

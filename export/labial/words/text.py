@@ -55,7 +55,6 @@ _SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "repres
 _PLACES = frozenset("""seat seats row gate gates room apartment apt flat suite unit bus exit hall platform section track
     terminal locker fig figure chapter part""".split())
 _SCALES = "hundred thousand million billion trillion".split()
-
 #: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
 nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
@@ -72,7 +71,6 @@ M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenhei
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
 #: Units behind which another number and its unit belong to the same length or duration, and what marks them.
 _PARTED = {"foot|feet": "f", "hour_": "h"}
-
 #: Capitals that are read letter by letter although a word could look so, and words of two letters, of three that begin
 #: with a vowel, and others that are words although they do not look so.
 _SPELT = frozenset("""VIP MIT SOS POW SAP SAT GED RIP SEC GOP DOD LAX LED DEA NEA GRE SLA COO NIH ASAP UCLA USDA USAF
@@ -95,7 +93,6 @@ _CODAS = frozenset("""B C D F G H K L M N P R S T W X Z BB BT CH CK CT DD FF FT 
 _PAIRS = frozenset("""AI AU AY EA EE EI EU EY IA IE IO OA OE OI OO OU OY UA UE UI UO UY YE YI EO AO UIE UEE EYE OYA AYE
     IOU AYO YA""".split())
 _LAST_PAIRS = frozenset("AY EA EE EY IE OE OO OU OY UE UY".split())
-
 #: Stage directions: the beginnings of verbs, behind which s, es or ing stands, and words that stand alone.
 _VERBS = """applaud beam blink blush breath burp chuckl clap clapp clear cough cri cry exhal frown gasp giggl
     glanc grin grinn groan gulp hum humm inhal laugh mumbl mutter nod nodd paus pout scream shout shrug shrugg sigh sing
@@ -471,7 +468,8 @@ def _owner(run: str) -> str:
 
 
 def _is_spelt_small(letters: str) -> bool:
-    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three times in a row."""
+    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three
+    times in a row."""
     return letters not in _SOUNDS and bool(_SMALL.match(letters))
 
 

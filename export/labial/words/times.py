@@ -9,21 +9,20 @@ from __future__ import annotations
 
 from typing import List, Sequence
 
+from labial.corpus.phonesets import VOWELS
 from labial.words.dictionary import PHONEMES
 
 VOWEL, VOICELESS = 1, 2
-_VOWELS = frozenset("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split())
+_VOWELS = frozenset(VOWELS.split())
 _VOICELESS = frozenset("CH F HH K P S SH T TH".split())
 
 _MEANS = """SIL 100 AA 101 AE 113 AH 45 AO 97 AW 144 AY 141 B 55 CH 125 D 48 DH 46 EH 77 ER 91 EY 126 F 93 G 70 HH 57
     IH 53 IY 94 JH 92 K 82 L 81 M 67 N 60 NG 82 OW 120 OY 152 P 86 R 67 S 102 SH 122 T 63 TH 89 UH 58 UW 81 V 52 W 73
     Y 78 Z 95 ZH 121""".split()
 _MEAN = dict(zip(_MEANS[::2], map(int, _MEANS[1::2])))
-
 #: (40,) mean duration of each phoneme, milliseconds, and its class: `VOWEL`, `VOICELESS` or 0.
 MILLISECONDS = tuple(_MEAN[name] + 5 for name in PHONEMES)
 CLASSES = tuple(VOWEL if name in _VOWELS else VOICELESS if name in _VOICELESS else 0 for name in PHONEMES)
-
 #: Factors of a vowel, per cent: of a word of one syllable, of three or more, in the last and in the first syllable,
 #: before a voiceless consonant, before a vowel, at the word's end, in the last syllable before a pause.
 VOWEL_FACTORS = {"one": 105, "many": 106, "last": 101, "first": 101, "voiceless": 101, "vowel": 117, "final": 101,

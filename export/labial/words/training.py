@@ -8,17 +8,15 @@ import numpy as np
 
 from labial.corpus.phonesets import SPEECH
 from labial.errors import ModelError
-from labial.words import decoder
 from labial.words.alignment import align, learn, loosened
 from labial.words.dictionary import LETTERS, Entry, pronunciations
 from labial.words.packing import multiplier_for
-from labial.words.questions import LABELS_MOST, Asked, features
-from labial.words.tables import WordTables
-from labial.words.trees import FIRST, OTHER, Samples, grow, prune
+from labial.words.tables import WordTables, labels_of
+from labial.words.tables import phonemes as spoken
+from labial.words.trees import FIRST, LABELS_MOST, OTHER, Asked, Samples, features, grow, prune
 
 #: Leaves of all trees, and exceptions, of the bundled tables.
 LEAVES, EXCEPTIONS = 13_000, 1_000
-
 #: What whoever passes the tables on must say; :data:`labial.words.dictionary.NOTICE` has the whole notice.
 ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-2015 Carnegie Mellon University. All "
                "rights reserved.")
@@ -60,7 +58,7 @@ def score(tables: WordTables, words: Dict[str, List[Tuple[int, ...]]]) -> Dict[s
     classes = SPEECH.viseme_class
     size = wrong = wrong_classes = wrong_words = 0
     for word, known in words.items():
-        got = decoder.phonemes(tables, word)
+        got = spoken(tables, word)
         errors, length = min((_distance(got, other), len(other)) for other in known)
         seen = [classes[p] for p in got]
         size += length
@@ -147,8 +145,8 @@ def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, c
     for word in dict.fromkeys(common):
         if len(found) == most:
             break
-        if word in given and decoder.phonemes(tables, word) not in known[word]:
-            read = decoder.labels_of(tables, word)
+        if word in given and spoken(tables, word) not in known[word]:
+            read = labels_of(tables, word)
             pairs = zip(read, given[word])
             found[word] = tuple((place, right) for place, (wrong, right) in enumerate(pairs) if wrong != right)
     return found

@@ -24,14 +24,11 @@ from labial.files.faps import CHANNELS
 
 #: Segments to each side of a frame's own that have an effect.
 NEIGHBOURS = 4
-
 #: Exponents p, and priors in frames, that are tried.
 EXPONENTS = (1.0, 1.5)
 PRIORS = (3.0, 30.0)
-
 #: Dominance falls to 1/e at this distance, in seconds, before it is fitted; |t - c| is measured in it.
 DISTANCE = 0.1
-
 #: The choice of settings fits on so many utterances, and only the channels of the labial parameters.
 TUNING_UTTERANCES = 160
 TUNING_CHANNELS = (1, 2, 3, 4, 5, 6)
@@ -87,9 +84,8 @@ def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
     return Parameters(x[:phonemes], x[phonemes : 2 * phonemes], x[2 * phonemes :].reshape(-1, 2))
 
 
-def objective(
-    around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
-) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
+def objective(around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float,
+              prior: float) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
     """The objective, which returns its value and gradient at a vector of parameters, and the starting point.
 
     `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
@@ -120,9 +116,8 @@ def objective(
     return loss, np.concatenate([centre, np.zeros(phonemes + rates)])
 
 
-def fit_channel(
-    around: Near, motion: np.ndarray, start: np.ndarray, viseme_class: np.ndarray, exponent: float, prior: float
-) -> Parameters:
+def fit_channel(around: Near, motion: np.ndarray, start: np.ndarray, viseme_class: np.ndarray, exponent: float,
+                prior: float) -> Parameters:
     """Fits one channel's motion (T,); `start` (P,) are the phonemes' means. Both FAP."""
     scale = max(float(motion.std()), 1e-9)
     loss, begin = objective(around, motion / scale, start / scale, viseme_class, exponent, prior)
@@ -162,26 +157,19 @@ def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray
     return result
 
 
-def _fit(
-    utterances: Sequence[Utterance], training: Training, exponent: float, prior: float, channels: Sequence[int]
-) -> Dominance:
+def _fit(utterances: Sequence[Utterance], training: Training, exponent: float, prior: float,
+         channels: Sequence[int]) -> Dominance:
     viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
     speech = [item.timeline.phoneme_at != training.silence for item in utterances]
     parts = [near(item.timeline, training.fps) for item in utterances]
-    around = Near(
-        *(
-            np.concatenate([getattr(part, name)[mask] for part, mask in zip(parts, speech)])
-            for name in ("phoneme", "distance", "present")
-        )
-    )
+    around = Near(*(np.concatenate([getattr(part, name)[mask] for part, mask in zip(parts, speech)])
+                    for name in ("phoneme", "distance", "present")))
     motion = np.concatenate([item.human[mask] for item, mask in zip(utterances, speech)])
     means = _phoneme_means(utterances, len(viseme_class))
     phonemes = len(viseme_class)
     still = Parameters(np.zeros(phonemes), np.zeros(phonemes), np.zeros((int(viseme_class.max()) + 1, 2)))
-    fitted = [
-        fit_channel(around, motion[:, k], means[:, k], viseme_class, exponent, prior) if k in channels else still
-        for k in range(CHANNELS)
-    ]
+    fitted = [fit_channel(around, motion[:, k], means[:, k], viseme_class, exponent, prior) if k in channels else still
+              for k in range(CHANNELS)]
     return Dominance(tuple(fitted), viseme_class, exponent, training.fps)
 
 

@@ -30,10 +30,8 @@ from labial.reference.tables import Equation
 #: States per phoneme, and frames that a level's parent counts for, that are tried.
 STATES = (3, 5)
 STRENGTHS = (0.5, 2.0, 6.0, 20.0)
-
 #: Rounds of re-alignment.
 ALIGNMENTS = 3
-
 #: Least variance of a state, as a share of the feature's variance over the training part.
 VARIANCE_FLOOR = 1e-3
 
@@ -69,9 +67,8 @@ def _weighted(values: np.ndarray, index: np.ndarray, size: int) -> np.ndarray:
     return np.stack([np.bincount(index, column, size) for column in values.T], axis=1)
 
 
-def pool(
-    keys: np.ndarray, state: np.ndarray, values: np.ndarray, states: int, strength: float, floor: np.ndarray
-) -> List[Level]:
+def pool(keys: np.ndarray, state: np.ndarray, values: np.ndarray, states: int, strength: float,
+         floor: np.ndarray) -> List[Level]:
     """The levels of context from samples: `keys` (n, levels), `state` (n,), `values` (n, F).
 
     Each level is drawn to the one before it as by `strength` samples; the first to the overall statistics.
@@ -198,9 +195,8 @@ def log_likelihoods(values: np.ndarray, row: np.ndarray, mean: np.ndarray, varia
     return found
 
 
-def align(
-    values: np.ndarray, row: np.ndarray, mean: np.ndarray, variance: np.ndarray, length: np.ndarray
-) -> np.ndarray:
+def align(values: np.ndarray, row: np.ndarray, mean: np.ndarray, variance: np.ndarray,
+          length: np.ndarray) -> np.ndarray:
     """(N,) int64: the likeliest states of the frames of segments of `length` frames each, which sum to N.
 
     A segment begins in the first state, ends in the last and skips none; one with fewer frames than states is divided

@@ -80,9 +80,7 @@ class Linear:
         return result
 
 
-def fit_ridge(
-    training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]
-) -> Linear:
+def fit_ridge(training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]) -> Linear:
     """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
 
     `make_design` computes the features of a part, since they may be trained, too.
@@ -151,9 +149,8 @@ def _design_of_neighbours(training: Training) -> Design:
         length = timeline.length[held]
         phoneme = timeline.phoneme[held]
         before, after = (np.repeat(item, length) for item in neighbour_classes(phoneme, viseme_class, silence))
-        position = (np.arange(timeline.frames) + 0.5 - np.repeat(timeline.start[held], length)) / np.repeat(
-            length, length
-        )
+        into = np.arange(timeline.frames) + 0.5 - np.repeat(timeline.start[held], length)
+        position = into / np.repeat(length, length)
         seconds = np.repeat(timeline.milliseconds[held] / 1000.0, length)
         duration = np.log(np.clip(seconds, 0.02, 1.0) / 0.1)
         blocks: List[csr_matrix] = []
@@ -185,7 +182,6 @@ def fit_regression(training: Training) -> Linear:
 #: The window reaches this far to both sides; labels are read every frame, the step stream every SPACING. Seconds.
 REACH = 0.3
 SPACING = 0.04
-
 #: Penalties that are tried: of labels, and of the stream divided by its standard deviations; frames.
 LABEL_PENALTIES = (10.0, 30.0, 100.0, 300.0, 1000.0)
 STREAM_PENALTIES = (30.0, 300.0, 3000.0)

@@ -59,9 +59,8 @@ def _fit(training: Training, context: bool) -> Steps:
         rows = np.flatnonzero(np.isin(items.phoneme, members))
         mixture = fit_mixture(vectors[rows], scale, COMPONENTS, training.seed)
         if context:
-            mixture = fit_context(
-                mixture, vectors[rows], scale, items.previous[rows], items.next[rows], len(phone_set.classes)
-            )
+            mixture = fit_context(mixture, vectors[rows], scale, items.previous[rows], items.next[rows],
+                                  len(phone_set.classes))
         fitted[members] = mixture
     mixtures = [fitted[plan.members[stand_in]] for stand_in in plan.stand_in]
     tables = shape_tables(mixtures, conditional=context)
