@@ -1,6 +1,6 @@
 // <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. labial-mouth.d.ts
 // documents it.
-import { heard } from "./heard.js";
+import { heard } from "./memory.js";
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
 /** Milliseconds in which a mouth comes to rest. */
