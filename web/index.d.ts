@@ -105,6 +105,8 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
     readonly time: number;
     /** Frames per second. */
     readonly fps: number;
+    /** The form of its frames. */
+    readonly output: O;
     /** The model of the next push. */
     readonly model: Model;
     /** The stream was ended or cancelled, and every frame was delivered. */
@@ -167,7 +169,8 @@ export interface HearOptions<O extends Output = Output> {
     channels?: 1 | 2;
     /** The AudioContext whose clock counts. By default that of the node; one for all other sources. */
     context?: Dom<"AudioContext">;
-    /** Whether the sound is played, in step with the lips: by default it is, but that of an AudioNode is not. */
+    /** Whether the sound is played, in step with the lips: by default it is, but that of an AudioNode is not. Of several
+     * hearings of one element the loudspeaker has the one that began last, of those that play; as it closes, the one before. */
     play?: boolean;
     /** Seconds by which the sound is played later than it comes, at least `latency`. Default: 0.2. */
     delay?: number;

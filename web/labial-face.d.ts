@@ -3,7 +3,8 @@ import type { TimedWord } from "./index.js";
 
 /** The element <labial-face>: a whole drawn face, which does all that <labial-mouth> does. Its eyes blink and its brows move,
  * unless the visitor prefers reduced motion. It can have the keyboard's focus, where Enter and the space bar are clicks, and
- * screen readers name it in the language of the page (`lang`); an `aria-label` or a `role` of your own replaces that.
+ * screen readers name it in the language of the place where it stands (`lang`); an `aria-label` or a `role` of your own
+ * replaces that.
  *
  * It is light or dark as `color-scheme` says. CSS variables: --labial-skin, --labial-hair, --labial-lips, --labial-iris,
  * --labial-backdrop-top, --labial-backdrop-bottom; `::part(caption)` is the caption. */

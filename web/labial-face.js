@@ -3,14 +3,16 @@
 import { LabialMouth, define } from "./labial-mouth.js";
 import { createFace } from "./mouth.js";
 
-/** What screen readers call it, by the language of the page. */
+/** What screen readers call it, by the language of the place where it stands. */
 const NAMES = {
     ar: "وجه يتحدث", cs: "Mluvící tvář", da: "Et talende ansigt", de: "Ein sprechendes Gesicht", en: "A speaking face",
     es: "Una cara que habla", fi: "Puhuvat kasvot", fr: "Un visage qui parle", hi: "बोलता हुआ चेहरा",
-    it: "Un volto che parla", ja: "話す顔", ko: "말하는 얼굴", nl: "Een pratend gezicht", no: "Et snakkende ansikt",
-    pl: "Mówiąca twarz", pt: "Um rosto que fala", ru: "Говорящее лицо", sv: "Ett talande ansikte", tr: "Konuşan bir yüz",
-    uk: "Обличчя, що говорить", zh: "说话的脸",
+    it: "Un volto che parla", ja: "話す顔", ko: "말하는 얼굴", nl: "Een pratend gezicht", nn: "Eit snakkande ansikt",
+    no: "Et snakkende ansikt", pl: "Mówiąca twarz", pt: "Um rosto que fala", ru: "Говорящее лицо", sv: "Ett talande ansikte",
+    tr: "Konuşan bir yüz", uk: "Обличчя, що говорить", zh: "说话的脸",
 };
+/** Codes of the same language. */
+const ALIASES = { nb: "no" };
 /** Most characters of a line of captions, and seconds for which it stays. */
 const LINE = 42;
 const STAYS = 1;
@@ -54,9 +56,9 @@ export class LabialFace extends LabialMouth {
         super.connectedCallback();
         if (!this.hasAttribute("tabindex")) this.tabIndex = 0;
         if (!this.#internals) return;
-        const { lang = "" } = this.closest("[lang]") ?? {};
+        const [language] = (languageOf(this) || navigator.language).toLowerCase().split("-");
         this.#internals.role = "img";
-        this.#internals.ariaLabel = NAMES[(lang || navigator.language).split("-")[0].toLowerCase()] ?? NAMES.en;
+        this.#internals.ariaLabel = NAMES[ALIASES[language] ?? language] ?? NAMES.en;
     }
 
     get words() {
@@ -110,6 +112,14 @@ export class LabialFace extends LabialMouth {
         this.#spans = (line?.words ?? []).map(({ text }) => Object.assign(document.createElement("span"), { textContent: text }));
         this.#caption.replaceChildren(...this.#spans.flatMap((span, i) => (i ? [" ", span] : [span])));
     }
+}
+
+/** The `lang` that holds for an element, which may be that of another component around it. */
+function languageOf(element) {
+    const marked = element.closest("[lang]");
+    if (marked) return marked.lang;
+    const { host } = element.getRootNode();
+    return host && languageOf(host);
 }
 
 /** Lines that fit, broken where a sentence ends or a pause is; each is shown until the next one begins. */

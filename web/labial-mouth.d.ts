@@ -3,9 +3,10 @@ import type { Faps, Hearing, Stream, Track, Voice } from "./index.js";
 /** The element <labial-mouth>: a drawn mouth, 430 wide by 412 high unless CSS says otherwise. The colours behind the
  * face are the CSS variables --labial-backdrop-top and --labial-backdrop-bottom.
  *
- * A source is a track, a stream, a hearing or a voice with the output "faps"; setting one starts it. With an audio element, the
- * drawn frame is within half a frame period of the sound, at any speed and, for a track, through jumps. After the sound's
- * end the source continues by the clock, and so does a source without a sound. If a source is closed or freed, the face
+ * A source is a track, a stream, a hearing or a voice with the output "faps", any other throws a TypeError; setting one
+ * starts it. With an audio element, the drawn frame is within half a frame period of the sound, at any speed and, for a
+ * track, through jumps. After the sound's end time goes on as heard() tells it. A source without a sound goes by the clock,
+ * and so does one that is set after the sound's end, until that is played again. If a source is closed or freed, the face
  * comes to rest, and then has no source.
  *
  * The event "ended" tells that the source has ended by itself and was drawn, "lost" that the stream that is heard has lost

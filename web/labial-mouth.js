@@ -1,9 +1,11 @@
 // <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. labial-mouth.d.ts
 // documents it.
+import { heard } from "./memory.js";
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
 /** Milliseconds in which a mouth comes to rest. */
 const CLOSING = 200;
+const NO_FAPS = `a frame has ${CHANNELS.length} FAPs; what is drawn has the output "faps"`;
 
 /** Plays a track: any moment of it, interpolated between frames. */
 class TrackPlayer {
@@ -178,6 +180,7 @@ export class LabialMouth extends Base {
     #goes = false; // there is more to draw than the mouth: captions
     #told = new AbortController(); // of the source's events
     #before = null; // when the last animation frame was, milliseconds
+    #late = false; // the sound had ended before the source was drawn first
     #asked = 0; // the next animation frame
     #rest = null; // of a source that is cancelled: the promise of cancel() and what resolves it
 
@@ -264,7 +267,7 @@ export class LabialMouth extends Base {
 
     show(faps) {
         if (faps.length !== CHANNELS.length) {
-            throw new TypeError(`a frame has ${CHANNELS.length} FAPs; what is drawn has the output "faps"`);
+            throw new TypeError(NO_FAPS);
         }
         this.#faps.set(faps);
         this.#draw(this.#faps);
@@ -292,6 +295,7 @@ export class LabialMouth extends Base {
     }
 
     #take(source, player) {
+        if (source?.output !== undefined && source.output !== "faps") throw new TypeError(NO_FAPS);
         this.#rested();
         this.#source = source || null;
         this.#player = player || null;
@@ -341,7 +345,7 @@ export class LabialMouth extends Base {
         }
         const player = this.#player;
         const audio = this.#rest ? null : this.audio;
-        this.#position = this.#moment(audio, (now - (this.#before ?? now)) / 1000);
+        this.#position = this.#moment(audio, now);
         this.#before = now;
         this.#goes = this.show(player.at(this.#position, audio));
         const over = player.over(this.#position);
@@ -354,12 +358,15 @@ export class LabialMouth extends Base {
         else if (!over || audio || this.#goes) this.#ask();
     }
 
-    /** The time to show now, seconds: the time of the sound; without a sound, or after it, that of the clock. */
-    #moment(audio, passed) {
-        if (!audio || audio.ended) return this.#position + passed;
+    /** The time to show now, seconds: that of the sound; without a sound that of the clock. A sound that has ended before
+     * the source is drawn is none until it is played again. */
+    #moment(audio, now) {
+        const passed = (now - (this.#before ?? now)) / 1000;
+        if (this.#before === null || !audio?.ended) this.#late = Boolean(audio?.ended);
+        if (!audio || this.#late) return this.#position + passed;
         const waits = audio.paused || audio.seeking || audio.readyState < HTMLMediaElement.HAVE_FUTURE_DATA;
-        if (waits) return audio.currentTime;
-        return follow(this.#position + passed * audio.playbackRate, audio.currentTime, this.#player.period);
+        if (waits || audio.ended) return heard(audio);
+        return follow(this.#position + passed * audio.playbackRate, heard(audio), this.#player.period);
     }
 }
 

@@ -212,6 +212,10 @@ export class Stream {
         return this.#fed.fps;
     }
 
+    get output() {
+        return this.#output;
+    }
+
     get model() {
         return this.#model;
     }

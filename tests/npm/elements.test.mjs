@@ -41,6 +41,7 @@ Object.assign(globalThis, {
 
 const { LabialFace } = await import(pathToFileURL(`${folder}/labial-face.js`));
 const { attach } = await import(pathToFileURL(`${folder}/attach.js`));
+const { heard } = await import(pathToFileURL(`${folder}/index.js`));
 const labial = await Labial.load({
     hearing: () => import(pathToFileURL(`${folder}-hearing/index.js`)),
     words: () => import(pathToFileURL(`${folder}-words/index.js`)),
@@ -165,6 +166,46 @@ test("captions go with the source, and stay for a second behind the end of one w
     assert.equal(text(), "Go");
     face.track = null;
     assert.equal(text(), "");
+});
+
+test("a source of another output is refused where it is set, and the one before goes on", async () => {
+    const face = new Face();
+    const track = face.track = labial.render([{ start: 0, end: 1, label: "AA" }]);
+    const others = {
+        track: labial.render([{ start: 0, end: 1, label: "AA" }], { output: "arkit" }),
+        stream: labial.stream({ output: "oculus" }),
+        hearing: await hearingOf(null, { output: "vrm" }),
+        voice: await voiceOf(null, { output: "arkit" }),
+    };
+    for (const [name, source] of Object.entries(others)) {
+        assert.equal(typeof source.output, "string");
+        assert.throws(() => { face[name] = source; }, { name: "TypeError", message: /output "faps"/ }, name);
+    }
+    play(face, 0.4);
+    assert.ok(face.track === track && wide(face) > 50);
+    face.remove();
+});
+
+test("behind the end of its sound a track is drawn as heard() has it, and a source set then goes by the clock", ({ mock }) => {
+    mock.method(performance, "now", () => now);
+    const face = new Face();
+    const track = labial.render([{ start: 0, end: 2, label: "AA" }]);
+    const audio = face.audio = { currentTime: 1.5, ended: false, paused: true };
+    face.track = track;
+    play(face, 0.1);
+    assert.equal(face.position, 1.5);
+    Object.assign(audio, { currentTime: 1.7, ended: true }); // a jump to the end
+    play(face, 0.2, () => assert.ok(face.position === 1.5 || Math.abs(face.position - heard(audio)) < 0.017));
+    assert.ok(face.position > 1.85 && face.position < 1.91, `${face.position}`);
+    face.track = track;
+    play(face, 0.2);
+    assert.ok(face.position > 0.15 && face.position < 0.21, `${face.position}`);
+    Object.assign(audio, { currentTime: 0, ended: false }); // played again
+    play(face, 0.1);
+    Object.assign(audio, { currentTime: 0.3, ended: true });
+    play(face, 0.1);
+    assert.ok(face.position > 0.35 && face.position < 0.41, `${face.position}`);
+    face.remove();
 });
 
 test("a source that is closed while it is drawn leaves a mouth at rest, for the next track", async () => {

@@ -110,6 +110,24 @@ def test_screen_readers_and_keyboards_find_the_face(opened: Any) -> None:
                 if not node.get("ignored") and node["role"]["value"] in ("image", "button")]  # fmt: skip
 
     assert ("image", "Ein sprechendes Gesicht") in named()
+    page.evaluate("document.documentElement.removeAttribute('lang')")
+    for language, name in (("nb", "Et snakkende ansikt"), ("no", "Et snakkende ansikt"), ("pt-BR", "Um rosto que fala"),
+                           ("NB-no", "Et snakkende ansikt"), ("nn-NO", "Eit snakkande ansikt"),
+                           ("tlh", "A speaking face")):
+        page.evaluate(f"document.body.lang = '{language}', document.body.append(face), 0")
+        assert ("image", name) in named(), language
+    page.evaluate('''(() => {
+        const [outer, inner] = [0, 1].map(() => document.createElement("div"));
+        document.body.append(outer);
+        outer.attachShadow({ mode: "open" }).append(inner);
+        inner.attachShadow({ mode: "closed" }).append(face);
+    })()''')
+    for place, language, name in (("document.body", "de", "Ein sprechendes Gesicht"),
+                                  ("outer", "fr", "Un visage qui parle")):
+        page.evaluate(f"outer = face.getRootNode().host.getRootNode().host, {place}.lang = '{language}', "
+                      "face.getRootNode().append(face), 0")
+        assert ("image", name) in named(), place
+    page.evaluate("document.body.append(face)")
     page.evaluate("face.role = 'button', face.ariaLabel = 'Bobby', 0")
     assert ("button", "Bobby") in named()
     assert page.evaluate("face.focus(), document.activeElement === face")

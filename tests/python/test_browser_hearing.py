@@ -218,6 +218,59 @@ def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
     page.evaluate("hearing.close()")
 
 
+def test_hearings_of_one_element_open_and_close_in_any_order(page: Page) -> None:
+    """Catches a hearing that the next one of the same element makes deaf, a close that throws, and a sound that the
+    loudspeaker gets twice or not at all."""
+    page.evaluate("""(async () => {
+        const context = window.context = new AudioContext(), out = new GainNode(context);
+        out.connect(context.destination);
+        Object.defineProperty(context, "destination", { value: out });
+        const rate = 16000, bytes = new DataView(new ArrayBuffer(44 + 2 * rate));
+        const words = [0x52494646, 0, 0x57415645, 0x666d7420];
+        words.forEach((word, i) => bytes.setUint32(4 * i, word));
+        [[4, 36 + 2 * rate], [16, 16], [20, 0x10001], [24, rate], [28, 2 * rate], [32, 0x100002], [40, 2 * rate]]
+            .forEach(([at, value]) => bytes.setUint32(at, value, true));
+        bytes.setUint32(36, 0x64617461);
+        for (let i = 0; i < rate; i++) { // 100 Hz, so that what is delayed by 0.2 s adds up
+            let tone = 0;
+            for (let k = 1; k < 20; k++) tone += Math.sin((2 * Math.PI * 100 * k * i) / rate) / k;
+            bytes.setInt16(44 + 2 * i, 4000 * tone, true);
+        }
+        const sound = new Blob([bytes], { type: "audio/wav" });
+        const audio = Object.assign(new Audio(URL.createObjectURL(sound)), { loop: true });
+        const peak = (node) => {
+            const meter = new AnalyserNode(context, { fftSize: 2048 }), block = new Float32Array(2048);
+            node.connect(meter);
+            return () => (meter.getFloatTimeDomainData(block), Math.max(...block));
+        };
+        window.loud = peak(out);
+        window.hearings = [];
+        window.open = async (options) => {
+            const hearing = await labial.hear(audio, { context, ...options });
+            hearings.push(Object.assign(hearing, { peak: peak(hearing.sound) }));
+        };
+        window.hears = (hearing) => hearing.peak() > 0.15 && Math.max(...hearing.at().map(Math.abs)) > 50;
+        await open();
+        await audio.play();
+    })()""")
+
+    def settled(sound: bool = True) -> None:
+        right = "loud() > 0.15 && loud() < 0.3" if sound else "loud() === 0"
+        page.wait_for(f"hearings.every(one => one.closed || hears(one)) && {right}")
+
+    settled()
+    for step in ("open()", "open({ play: false })", "open()", "hearings[0].close()", "hearings[3].close()", "open()"):
+        page.evaluate(f"Promise.resolve({step}).then(() => 0)")
+        settled()
+    for number in (4, 1):
+        page.evaluate(f"hearings[{number}].close()")
+        settled(number == 4)  # the last one is not played
+    page.evaluate("hearings[2].close()")
+    settled()
+    page.evaluate("open().then(() => hearings[5].sound.disconnect()).then(() => hearings[5].close())")
+    settled()
+
+
 def test_a_bundle_without_the_processors_file_has_its_text(page: Page) -> None:
     """esbuild and rollup do not emit it; the page loads what stands in the package as text."""
     page.evaluate("""(() => {

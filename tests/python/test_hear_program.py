@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import random
 import struct
 import subprocess
+import sys
 from pathlib import Path
-from typing import List
+from typing import List, Tuple
 
 import numpy as np
 import pytest
 
 import labial
+from labial.__main__ import main
 from models import write_wav
 from packages import needs_runtime
 from test_animation import read_fap
@@ -243,8 +246,10 @@ WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
     (WHOLE[:19], "ends before its samples"),
     (WHOLE[:30], "ends within its format"),
     (WHOLE[:40], "ends before its samples"),
-    (WHOLE[:45], "ends before its samples do"),
-    (WHOLE[:-1], "ends before its samples do"),
+    (WHOLE[:44], "the sound is empty: it has no samples"),
+    (WHOLE[:45], "the sound is empty: it has no samples"),
+    (riff(form(), chunk(b"data", b"")), "the sound is empty: it has no samples"),
+    (riff(form(), chunk(b"data", b""), chunk(b"LIST", b"INFO")), "the sound is empty: it has no samples"),
     (riff(form(), chunk(b"LIST", b"short", 0xFFFFFFFF), chunk(b"data", pcm(SOUND))), "a chunk is longer than the file"),
     (riff(chunk(b"fmt ", b"\1\0\1\0" + bytes(11)), chunk(b"data", b"")), "its format has less than 16 bytes"),
     (riff(form(more=b"x")[:4] + b"\xff\xff\xff\x7f" + form()[8:], chunk(b"data", pcm(SOUND))),
@@ -278,6 +283,67 @@ def test_hostile_files_are_refused(data: bytes, told: str, tmp_path: Path) -> No
     assert hear(str(path), "--to", "fap").stdout == b"", "a part of the motion under a header of its own"
 
 
+def both(path: Path, capfd: pytest.CaptureFixture[str]) -> List[Tuple[int, str, str]]:
+    """Exit status, motion and what is said of labial-hear and `labial hear`, for a file and for standard input."""
+    done = hear(str(path)), hear("-", data=path.read_bytes())
+    found = [(one.returncode, one.stdout.decode(), one.stderr.decode().replace("labial-hear: ", "labial: "))
+             for one in done]  # fmt: skip
+    stdin = sys.stdin
+    for name in (str(path), "-"):
+        with open(path, "rb") as file:
+            sys.stdin = io.TextIOWrapper(file)
+            status = main(["hear", name, "--model", "small", "--sound-alone"])
+        sys.stdin = stdin
+        captured = capfd.readouterr()
+        found.append((status, captured.out, captured.err))
+    return found
+
+
+SIZES = [(0, 0), (0xFFFFFFFF, 0), (36, 0), (0xFFFFFFFF, 0xFFFFFFFF), (0, 0xFFFFFFFF)]
+
+
+@pytest.mark.parametrize(("size", "samples"), SIZES)
+def test_sizes_that_a_pipe_does_not_know(size: int, samples: int, tmp_path: Path,
+                                         capfd: pytest.CaptureFixture[str]) -> None:
+    """What programs write into a pipe, with 0 or the largest number where a size is not known: all sound is heard."""
+    path = tmp_path / "piped.wav"
+    path.write_bytes(b"RIFF" + struct.pack("<I", size) + riff(form(), chunk(b"data", pcm(SOUND), samples))[8:] + b"x")
+    found = both(path, capfd)
+    (tmp_path / "whole.wav").write_bytes(WHOLE)
+    assert found == both(tmp_path / "whole.wav", capfd)
+    assert {(status, said) for status, _, said in found} == {(0, "")}
+    assert [len(motion.splitlines()) for _, motion, _ in found] == [1 + 35 + 12] * 4
+
+
+def test_a_file_that_is_cut_off_is_heard_as_far_as_it_goes(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Catches an error in place of a warning, sound before the end that is lost, and half a sample that counts."""
+    path = tmp_path / "cut.wav"
+    path.write_bytes(riff(form(), chunk(b"data", pcm(SOUND) + b"x", 4 * len(SOUND)))[:-1])
+    told = "the file is cut off: 0.70 of 1.40 s are there\n"
+    for name, (status, motion, said) in zip([str(path), "standard input"] * 2, both(path, capfd)):
+        assert (status, said) == (0, f"labial: warning: {name}: {told}")
+        rows = [[int(float(value)) for value in line.split(",")[1:]] for line in motion.splitlines()[1:]]
+        assert rows == wanted(SOUND, file=name == str(path))
+
+
+def test_channels_that_cancel_each_other_are_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """One of two plugs the wrong way round: the mean is silence, so the first channel is heard. Channels that differ in
+    another way are mixed, and nothing is said; also where a first pair of samples happens to cancel."""
+    path = tmp_path / "stereo.wav"
+    quiet = np.zeros(1600, np.int16)
+    quiet[3] = 5
+    cases = [(SOUND, -SOUND, True), (SOUND, -(SOUND - SOUND // 20), True), (SOUND, -(SOUND // 2), False),
+             (SOUND, 0 * SOUND, False), (np.append(quiet, SOUND), np.append(-quiet, SOUND), False)]  # fmt: skip
+    for first, second, cancel in cases:
+        write_wav(path, np.stack([first, second], axis=1), 16000)
+        expected = np.stack([first, first if cancel else second], axis=1)
+        for name, (status, motion, said) in zip([str(path), "standard input"] * 2, both(path, capfd)):
+            told = f"labial: warning: {name}: its two channels cancel each other, so the first one is heard alone\n"
+            assert (status, said) == (0, told if cancel else "")
+            rows = [[int(float(value)) for value in line.split(",")[1:]] for line in motion.splitlines()[1:]]
+            assert rows == wanted(expected, file=name == str(path)) and np.abs(rows).max() > 100
+
+
 @pytest.mark.parametrize("name", [b"RF64", b"BW64"])
 def test_files_beyond_4_gb_are_refused(name: bytes, tmp_path: Path) -> None:
     """Catches a header of 64-bit sizes that is heard as samples, from a file and from standard input; the name alone is
@@ -308,7 +374,9 @@ def test_any_bytes_are_survived(seed: int, tmp_path: Path) -> None:
         path.write_bytes(data)
         done = hear(str(path))
         assert done.returncode in (0, 1)
-        assert done.stderr.count(b"\n") == done.returncode and not done.stderr.strip(b"\n").count(b"\x1b")
+        said = done.stderr.splitlines()
+        assert len(said) == done.returncode or (len(said) == 1 and b": warning: " in said[0])
+        assert not done.stderr.strip(b"\n").count(b"\x1b")
 
 
 def test_files_that_cannot_be_read_are_named(tmp_path: Path) -> None:

@@ -19,6 +19,8 @@ import pytest
 
 import labial
 from labial.__main__ import main
+from labial.corpus.timings import read_segments
+from labial.errors import DataError
 from labial.see.motion import read_bands
 from models import lab
 from packages import SOURCE, needs_runtime
@@ -163,10 +165,29 @@ def test_times_of_another_unit_are_asked_about(text: str, asked: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "\n", " \r\n\n", "; nothing\n"])
-def test_empty_input_is_no_motion(text: str) -> None:
-    """Nothing in is nothing out, and no error."""
-    assert motion(text) == []
-    assert say(text, "--to", "fap").stdout.split()[3:] == [b"0"]
+def test_empty_input_is_an_error(text: str, tmp_path: Path) -> None:
+    """Catches a motion of no frames that nobody notices; the exporter says the same."""
+    done = say(text)
+    assert done.returncode == 1 and done.stderr == b"labial-say: no segments\n"
+    path = tmp_path / "empty.lab"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(DataError, match=f"^{path}: no segments$"):
+        read_segments(path)
+
+
+@pytest.mark.parametrize("wrong", [
+    "\xe9".encode("latin-1"), b"\xff", b"\x80", b"\xc1\x81", b"\xe0\x80\x81", b"\xed\xa0\x80", b"\xf4\x90\x80\x80",
+    b"\xf0\x8f\xbf\xbf", b"\xf5", b"\xe2\x82", b"\xc3",
+])  # fmt: skip
+def test_other_encodings_are_refused_with_their_line(wrong: bytes, tmp_path: Path) -> None:
+    """Latin-1, and forms that UTF-8 forbids; the exporter names the same line."""
+    text = "0 0.1 \u0259\n0.1 0.2 \uffff\U00010000\n".encode() + b"0.2 0.3 a" + wrong + b"\n0.3 0.4 b\n"
+    done = say(text)
+    assert done.returncode == 1 and done.stderr.splitlines()[-1] == b"labial-say: line 3: not UTF-8 text"
+    path = tmp_path / "other.lab"
+    path.write_bytes(text)
+    with pytest.raises(DataError, match=f"^{path}:3: not UTF-8 text$"):
+        read_segments(path)
 
 
 def test_articulation_is_the_streams() -> None:

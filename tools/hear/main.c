@@ -25,6 +25,11 @@
 #define BLOCKS_PER_SECOND 100
 #define BLOCK_MAX (2 * 48000 / BLOCKS_PER_SECOND)
 
+/* Two channels cancel each other where their mean has less than a hundredth of their energy, once they have that of a
+ * faint sound: 10 ms of 16 kHz at 80 of 32,768. */
+#define CANCELLED 100.0
+#define FAINT 1e6
+
 typedef struct {
     const char *name;
     const labial_hear_model_t *model;
@@ -49,6 +54,7 @@ typedef struct {
     wav_t wav;
     frames_t frames;
     int classes;
+    double each, mean; /* energy of two channels: the mean of theirs, that of their mean */
 } hear_t;
 
 static const char usage_begin[] =
@@ -151,6 +157,11 @@ static int failed(const hear_t *hear, const char *why)
     return EXIT_INPUT;
 }
 
+static void warning(const hear_t *hear, const char *what)
+{
+    fprintf(stderr, "labial-hear: warning: %s: %s\n", hear->sound, what);
+}
+
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     hear_t *hear = user;
@@ -180,19 +191,57 @@ static int flush(hear_t *hear)
     return result ? failed(hear, "cannot write what was heard") : 0;
 }
 
+static int cancelled(const hear_t *hear)
+{
+    return hear->each >= FAINT && hear->mean * CANCELLED < hear->each;
+}
+
+/* Reads as wav_read() does. Where two channels cancel each other, their mean would be silence: the second one becomes the
+ * first. */
+static long read_block(hear_t *hear, int16_t *samples, size_t count)
+{
+    const long read = wav_read(&hear->wav, samples, count);
+    if (hear->wav.channels != 2)
+        return read;
+    for (long i = 0; i < read; i++) {
+        const double a = samples[2 * i], b = samples[2 * i + 1];
+        hear->each += (a * a + b * b) / 2.0;
+        hear->mean += (a + b) * (a + b) / 4.0;
+    }
+    for (long i = 0; i < read && cancelled(hear); i++)
+        samples[2 * i + 1] = samples[2 * i];
+    return read;
+}
+
 static int hear_all(hear_t *hear)
 {
     int16_t samples[BLOCK_MAX];
     const size_t count = hear->wav.rate / BLOCKS_PER_SECOND; /* a rate that the stream accepted */
+    int warned = 0;
+    uint64_t all = 0;
     long read;
     do {
-        read = wav_read(&hear->wav, samples, count);
+        read = read_block(hear, samples, count);
         if (read < 0)
             return failed(hear, hear->wav.message);
+        all += (uint64_t)read;
+        if (cancelled(hear) && !warned) {
+            warned = 1;
+            warning(hear, "its two channels cancel each other, so the first one is heard alone");
+        }
         (void)labial_hear_push(&hear->stream, samples, (size_t)read);
         if (flush(hear) != 0)
             return EXIT_INPUT;
     } while ((size_t)read == count);
+    if (all == 0 && wav_has_header(&hear->wav))
+        return failed(hear, "the sound is empty: it has no samples");
+    if (hear->wav.cut > 0) {
+        const double promised = wav_promised(&hear->wav);
+        char what[80];
+        (void)snprintf(what, sizeof what, "the file is cut off: %.2f of %.2f s are there",
+                       promised - wav_missing(&hear->wav), promised);
+        warning(hear, what);
+    }
     (void)labial_hear_end(&hear->stream);
     return 0;
 }
@@ -236,7 +285,7 @@ static int measure(hear_t *hear, unsigned *level)
     *level = LABIAL_HEAR_LEVEL_MIN;
     (void)labial_hear_set_level(&hear->stream, *level);
     do {
-        read = wav_read(&hear->wav, samples, count);
+        read = read_block(hear, samples, count);
         if (read > 0)
             (void)labial_hear_push(&hear->stream, samples, (size_t)read);
         if (labial_hear_level(&hear->stream) > *level)

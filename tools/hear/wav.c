@@ -17,7 +17,8 @@
 #define MU_LAW 7u
 #define EXTENSIBLE 0xfffeu
 
-/* Programs that write into a pipe do not know the size of the sound, and write the largest that their like accepts. */
+/* Programs that write into a pipe do not know the size of the sound, and write the largest that their like accepts, or
+ * 0. */
 #define SIZE_UNKNOWN 0x7ffff000u
 
 static uint32_t little_endian(const unsigned char *at, unsigned bytes)
@@ -114,6 +115,7 @@ static int failed(wav_t *wav, const char *why)
 
 static int read_all(wav_t *wav, unsigned char *bytes, size_t count, const char *why)
 {
+    wav->place += (uint32_t)count;
     return fread(bytes, 1, count, wav->in) == count ? 0 : failed(wav, why);
 }
 
@@ -187,13 +189,16 @@ static int read_chunks(wav_t *wav)
 {
     unsigned char head[8];
     wav->last = 0;
+    wav->place = WAV_HEAD - 8u; /* of what the size of the file counts */
+    wav->riff = little_endian(wav->head + 4, 4);
     for (;;) {
         if (read_all(wav, head, 8, "ends before its samples") != 0)
             return -1;
         const uint32_t size = little_endian(head + 4, 4);
         if (memcmp(head, "data", 4) == 0) {
-            wav->left = size;
-            wav->endless = size >= SIZE_UNKNOWN;
+            const int behind = wav->riff <= wav->place || wav->riff >= SIZE_UNKNOWN; /* no other chunk is */
+            wav->left = wav->size = size;
+            wav->endless = size >= SIZE_UNKNOWN || (size == 0 && behind);
             return wav->channels > 0 ? 0 : failed(wav, "has no format before its samples");
         }
         if (memcmp(head, "fmt ", 4) == 0) {
@@ -246,10 +251,14 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
         if (!wav->endless && wanted > wav->left)
             wanted = wav->left;
         const size_t got = read_bytes(wav, bytes, wanted);
-        if (got < wanted && (!wav->endless || ferror(wav->in)))
-            return failed(wav, "ends before its samples do");
+        if (ferror(wav->in))
+            return failed(wav, "");
         if (!wav->endless)
             wav->left -= (uint32_t)got;
+        if (!wav->endless && got < wanted) {
+            wav->cut = wav->left;
+            wav->left = 0;
+        }
         for (size_t i = 0; i < got / size * wav->channels; i++)
             samples[read * wav->channels + i] = wav->sample(bytes + wav->bytes * i, &wrong);
         if (wrong)
@@ -259,4 +268,24 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
             break;
     }
     return (long)read;
+}
+
+int wav_has_header(const wav_t *wav)
+{
+    return wav->place > 0;
+}
+
+static double seconds(const wav_t *wav, uint32_t bytes)
+{
+    return (double)bytes / (double)(wav->bytes * wav->channels) / (double)wav->rate;
+}
+
+double wav_promised(const wav_t *wav)
+{
+    return seconds(wav, wav->size);
+}
+
+double wav_missing(const wav_t *wav)
+{
+    return seconds(wav, wav->cut);
 }

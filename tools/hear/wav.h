@@ -27,8 +27,11 @@ typedef struct {
     unsigned first, last;         /* which of them are still to be read: from `first` on, before `last` */
     unsigned bytes;               /* of a sample of one channel */
     wav_sample_fn sample;
-    uint32_t left; /* bytes of samples that are still to come */
-    int endless;   /* they come until the file ends */
+    uint32_t left;        /* bytes of samples that are still to come */
+    int endless;          /* they come until the file ends */
+    uint32_t size;        /* bytes of samples that the header promises */
+    uint32_t cut;         /* those of them that were missing at the file's end */
+    uint32_t riff, place; /* bytes of the file, as it says, and before its samples; 0 of samples without a header */
 } wav_t;
 
 /* Reads as far as the first sample. `in` stays the caller's. Returns 0, or -1 with `message`. */
@@ -40,9 +43,17 @@ int wav_open_or_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels);
 
 /*
  * Reads at most `count` samples, of two channels as many pairs. Returns how many it read, fewer only at the end, where
- * a part of a sample is dropped; or -1 with `message` if the file ends before its samples do, has a sample that is not
- * finite, or cannot be read. Samples of more bits are cut to 16, floating point is rounded; 1 is full scale.
+ * a part of a sample is dropped; or -1 with `message` if the file has a sample that is not finite, or cannot be read.
+ * A file may end before its samples do: wav_missing(). Samples of more bits are cut to 16, floating point is rounded; 1 is
+ * full scale.
  */
 long wav_read(wav_t *wav, int16_t *samples, size_t count);
+
+/* Whether the samples came with a header. */
+int wav_has_header(const wav_t *wav);
+
+/* After the last sample: seconds of sound that the header promised, and how many of them were not in the file. */
+double wav_promised(const wav_t *wav);
+double wav_missing(const wav_t *wav);
 
 #endif

@@ -150,8 +150,10 @@ static int read_timings(say_t *say, const options_t *options)
     timings_t *timings = &say->timings;
     const int result =
         timings_read(timings, stdin, (labial_timings_format_t)options->from, options->tier, on_phoneme, say);
-    if (result < 0)
+    if (result < 0 && timings->line > 0)
         fprintf(stderr, "labial-say: line %lu: %s\n", timings->line, timings->message);
+    else if (result < 0)
+        fprintf(stderr, "labial-say: %s\n", timings->message);
     return result == 0 ? 0 : -1;
 }
 

@@ -43,6 +43,7 @@ static int hand_on(timings_t *t, const labial_timing_t *timing, const char *labe
 static int take(timings_t *t, const labial_timing_t *timing)
 {
     int result = 0;
+    t->found = 1;
     if (timing->start > t->end + LABIAL_TIMINGS_TOLERANCE)
         result = hand_on(t, timing, NULL, -1, timing->start);
     if (result == 0)
@@ -83,6 +84,30 @@ static int put(timings_t *t, unsigned byte)
     return parse(t, &text, 1);
 }
 
+static int not_utf8(timings_t *t)
+{
+    return malformed(t, "not UTF-8 text");
+}
+
+/* Refuses what is no character: bytes of other encodings, longer forms than needed, surrogates, beyond U+10FFFF. */
+static int put_utf8(timings_t *t, unsigned byte)
+{
+    if (t->more > 0 && (byte < t->low || byte > t->high))
+        return not_utf8(t);
+    if (t->more > 0) {
+        t->more--;
+        t->low = 0x80u;
+        t->high = 0xbfu;
+    } else if (byte >= 0x80u) {
+        if (byte < 0xc2u || byte > 0xf4u)
+            return not_utf8(t);
+        t->more = byte < 0xe0u ? 1 : byte < 0xf0u ? 2 : 3;
+        t->low = byte == 0xe0u ? 0xa0u : byte == 0xf0u ? 0x90u : 0x80u;
+        t->high = byte == 0xedu ? 0x9fu : byte == 0xf4u ? 0x8fu : 0xbfu;
+    }
+    return put(t, byte);
+}
+
 static int put_code_point(timings_t *t, unsigned c)
 {
     const unsigned more = c < 0x80u ? 0 : c < 0x800u ? 1 : c < 0x10000u ? 2 : 3;
@@ -115,7 +140,7 @@ static int put_utf16(timings_t *t, unsigned byte)
 static int put_byte(timings_t *t, unsigned byte)
 {
     if (t->encoding == ENCODING_UTF8)
-        return put(t, byte);
+        return put_utf8(t, byte);
     if (t->encoding != ENCODING_UNKNOWN)
         return put_utf16(t, byte);
     if (t->first == NO_BYTE && (byte == 0xffu || byte == 0xfeu)) {
@@ -129,8 +154,7 @@ static int put_byte(timings_t *t, unsigned byte)
                                                            : ENCODING_UTF16_BE;
     if (t->encoding != ENCODING_UTF8)
         return 0;
-    const int result = first == NO_BYTE ? 0 : put(t, first);
-    return result == 0 ? put(t, byte) : result;
+    return first == NO_BYTE ? put_utf8(t, byte) : not_utf8(t); /* no text begins with 0xfe or 0xff */
 }
 
 /* ---- The whole text -------------------------------------------------------------------------------------------- */
@@ -139,9 +163,9 @@ static int finish(timings_t *t)
 {
     labial_timing_t timing;
     int found = LABIAL_STARVED, result = 0;
-    if (t->encoding == ENCODING_UNKNOWN && t->first != NO_BYTE)
-        result = put(t, t->first);
-    else if (t->first != NO_BYTE || t->pair != 0)
+    if ((t->encoding == ENCODING_UNKNOWN && t->first != NO_BYTE) || t->more != 0)
+        return not_utf8(t);
+    if (t->first != NO_BYTE || t->pair != 0)
         return malformed(t, "the text ends within a character of UTF-16");
     while (result == 0 && (found = labial_timings_end(&t->parser, &timing)) != LABIAL_DONE) {
         if (found == LABIAL_OK)
@@ -149,7 +173,11 @@ static int finish(timings_t *t)
         else
             result = found < 0 ? malformed(t, labial_timings_message(&t->parser)) : parse(t, t->kept, t->size);
     }
-    return result;
+    if (result != 0 || t->found)
+        return result;
+    t->line = 0;
+    t->message = "no segments";
+    return -1;
 }
 
 int timings_read(timings_t *t, FILE *in, labial_timings_format_t format, const char *tier, timings_sink_t sink,

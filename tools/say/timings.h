@@ -22,7 +22,7 @@ typedef int (*timings_sink_t)(void *user, const timings_phoneme_t *phoneme);
 
 /* Read `line` and `message`; the rest is private. */
 typedef struct {
-    unsigned long line; /* of the phoneme, or that is wrong */
+    unsigned long line; /* of the phoneme, or that is wrong; 0 where that is the whole text */
     const char *message;
     char said[LABIAL_TIMINGS_LABEL_MAX + 32]; /* the message where it is not the parser's */
     labial_timings_t parser;
@@ -30,14 +30,16 @@ typedef struct {
     void *user;
     uint64_t end; /* of the latest phoneme, nanoseconds */
     unsigned encoding, first, pair;
-    char *kept; /* the text as UTF-8, as long as it may have to be read again */
+    unsigned more, low, high; /* bytes that a character of UTF-8 still has, and within what the next one is */
+    int found;                /* whether there was a phoneme or a laugh */
+    char *kept;               /* the text as UTF-8, as long as it may have to be read again */
     size_t size, room;
 } timings_t;
 
 /*
  * Reads all of `in` and hands its phonemes to `sink`. `tier` names the tier of a TextGrid; null without.
  *
- * Returns 0; -1 where the text is malformed or cannot be read, which `message` says; 1 where `sink` ended the reading.
+ * Returns 0; -1 where the text is malformed, has no timings or cannot be read, which `message` says; 1 where `sink` ended the reading.
  */
 int timings_read(timings_t *timings, FILE *in, labial_timings_format_t format, const char *tier, timings_sink_t sink,
                  void *user);

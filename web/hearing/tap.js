@@ -1,7 +1,8 @@
 // Takes the samples of a stream, an element or a node, and plays the sound later, in step with the lips.
 
-/** Contexts that have the processor, and the nodes of elements: an element can have only one. */
+/** Contexts that have the processor. */
 const prepared = new WeakMap();
+/** The outlet of each element: it can have only one node, which all its hearings share. */
 const elements = new WeakMap();
 /** For sources that come without a context. */
 let shared;
@@ -17,7 +18,7 @@ export function contextOf({ LabialError, shown }, source, given) {
     if (!isStream(source) && !isElement(source)) {
         throw new TypeError(`the source is ${shown(source)}, not a MediaStream, an audio element or an AudioNode`);
     }
-    const known = elements.get(source)?.context ?? given ?? shared;
+    const known = elements.get(source)?.node.context ?? given ?? shared;
     if (known) return known;
     if (!globalThis.AudioContext) throw new LabialError("there is no AudioContext here: push() the samples instead");
     return (shared = new AudioContext());
@@ -64,8 +65,40 @@ function nodeOf(LabialError, context, source) {
         if (!source.getAudioTracks().length) throw new LabialError("the stream has no track of sound");
         return context.createMediaStreamSource(source);
     }
-    if (!elements.has(source)) elements.set(source, context.createMediaElementSource(source));
-    return elements.get(source);
+    if (!elements.has(source)) elements.set(source, new Outlet(context.createMediaElementSource(source)));
+    return elements.get(source).node;
+}
+
+/** What the loudspeaker gets of an element: the sound of the tap that was opened last, of those that play. Without any tap
+ * it is the sound itself, as an element with a node cannot play in another way any more. */
+class Outlet {
+    #taps = [];
+    #direct;
+    #heard = null; // the node that the loudspeaker has
+
+    constructor(node) {
+        this.node = node;
+        this.#direct = new GainNode(node.context);
+        node.connect(this.#direct);
+    }
+
+    add(tap) {
+        this.#taps.push(tap);
+        this.#route();
+    }
+
+    remove(tap) {
+        this.#taps = this.#taps.filter((one) => one !== tap);
+        this.#route();
+    }
+
+    #route() {
+        const heard = this.#taps.length ? this.#taps.findLast(({ play }) => play)?.speaker ?? null : this.#direct;
+        if (heard === this.#heard) return;
+        this.#heard?.disconnect();
+        heard?.connect(this.node.context.destination);
+        this.#heard = heard;
+    }
 }
 
 class Tap {
@@ -74,13 +107,15 @@ class Tap {
     #source;
     #later;
     #silent = null;
+    #outlet; // of an element
     #watched = new AbortController(); // of the source's events
 
     constructor(context, node, { source, factor, play }) {
         this.context = context;
         this.sampleRate = context.sampleRate / factor;
-        this.element = isElement(source);
         this.play = play;
+        this.speaker = new GainNode(context); // behind `sound`, which is the page's, too
+        this.#outlet = elements.get(source);
         this.#node = node;
         this.#source = source;
         this.#worklet = new AudioWorkletNode(context, "labial-tap", {
@@ -107,9 +142,9 @@ class Tap {
         const { context } = this;
         this.#later = new DelayNode(context, { delayTime: delay, maxDelayTime: delay + 1 });
         this.sound = new GainNode(context);
-        if (this.element) this.#node.disconnect(); // it may play without delay, after an earlier hearing
-        this.#node.connect(this.#later).connect(this.sound);
-        if (this.play) this.sound.connect(context.destination);
+        this.#node.connect(this.#later).connect(this.sound).connect(this.speaker);
+        if (this.#outlet) this.#outlet.add(this);
+        else if (this.play) this.speaker.connect(context.destination);
         this.#worklet.port.onmessage = ({ data: [block, time] }) => take(block, time + delay);
         this.#node.connect(this.#worklet).connect(context.destination);
     }
@@ -119,12 +154,13 @@ class Tap {
         this.#worklet.port.onmessage = null;
         this.#worklet.port.postMessage(null);
         this.#worklet.disconnect();
+        this.#outlet?.remove(this);
+        this.speaker.disconnect();
         this.sound?.disconnect();
         if (this.#later) {
             this.#node.disconnect(this.#worklet);
             this.#node.disconnect(this.#later);
         }
-        if (this.element) this.#node.connect(this.context.destination); // it cannot play in another way any more
         if (this.#silent) this.#silent.srcObject = null;
     }
 }

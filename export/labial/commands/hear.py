@@ -7,10 +7,10 @@ import functools
 import importlib.util
 import sys
 import warnings
-import wave
 from contextlib import suppress
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, Iterator, List, NamedTuple, Optional, Sequence, Tuple, cast
+from typing import TYPE_CHECKING, Any, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 from labial.commands.common import add_format, add_phones, add_said, format_of, opened, said
 from labial.errors import DataError, LabialError, needs
@@ -29,8 +29,8 @@ _RATES = (8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)
 _FOUND, _PASSING = 0.5, 5
 #: Bytes that are read at once: 20 ms of 16 kHz, so that frames of a pipe are written as they come.
 _BLOCK = 640
-#: Bytes that tell a WAV file, and what is heard without conversion.
-_HEAD, _PLAIN = 12, "a WAV file of 16 bits, one or two channels and a usual rate"
+#: What is heard without conversion.
+_PLAIN = "a WAV file of 16 bits, one or two channels and a usual rate"
 
 
 def add_hear(command: argparse.ArgumentParser) -> None:
@@ -161,9 +161,10 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
     """Rate, channels and samples of a file. A WAV file of 16 bits is heard as it is, all else as the reader of ``labial
     align`` converts it."""
     try:
-        with wave.open(path, "rb") as file:
+        with open(path, "rb") as content, wav.Sound(content) as file:
             if _is_plain(file):
-                return file.getframerate(), file.getnchannels(), b"".join(wav.blocks(file, path))
+                blocks = _in_phase(wav.blocks(file, path), file.getnchannels(), path)
+                return file.getframerate(), file.getnchannels(), b"".join(blocks)
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None
     except wav.ERRORS:
@@ -171,20 +172,26 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
     return 16000, 1, _converted(path)
 
 
-def _is_plain(file: wave.Wave_read) -> bool:
+def _is_plain(file: wav.Sound) -> bool:
     """Whether a file is heard without conversion."""
     return file.getsampwidth() == 2 and file.getnchannels() <= 2 and file.getframerate() in _RATES
 
 
-class _Joined:
-    """A stream whose first bytes were read, as far as :mod:`wave` reads files."""
+def _in_phase(blocks: Iterator[bytes], channels: int, path: str) -> Iterator[bytes]:
+    """Blocks of 16 bits. Where two channels cancel each other, their mean would be silence: the second becomes the
+    first."""
+    import numpy as np
 
-    def __init__(self, head: bytes, rest: BinaryIO) -> None:
-        self._head, self._rest = head, rest
+    from labial.files.channels import Phase
 
-    def read(self, count: int) -> bytes:
-        part, self._head = self._head[:count], self._head[count:]
-        return part + self._rest.read(count - len(part))
+    phase = Phase(path)
+    for block in blocks:
+        whole = len(block) // 4 * 4
+        if channels == 2:
+            samples = np.frombuffer(block[:whole], "<i2").reshape(-1, 2)
+            if phase.cancels(samples):
+                block = np.repeat(samples[:, :1], 2, axis=1).tobytes() + block[whole:]
+        yield block
 
 
 def _piped(rate: int, channels: int) -> Tuple[int, int, Iterator[bytes]]:
@@ -193,16 +200,17 @@ def _piped(rate: int, channels: int) -> Tuple[int, int, Iterator[bytes]]:
         raise LabialError(f"{rate} samples per second are not one of {', '.join(map(str, _RATES))}")
     if sys.stdin is None:
         raise LabialError("standard input is closed")
-    head = sys.stdin.buffer.read(_HEAD)
-    sound = _Joined(head, sys.stdin.buffer)
+    sound, name = sys.stdin.buffer, "standard input"
+    head = sound.read(wav.HEAD)
     if head[:4] not in (b"RIFF", b"RF64", b"BW64") or head[8:] != b"WAVE":
-        return rate, channels, iter(lambda: sound.read(_BLOCK), b"")
+        blocks = chain([head], iter(lambda: sound.read(_BLOCK), b""))
+        return rate, channels, _in_phase(blocks, channels, name)
     with suppress(*wav.ERRORS):
-        file = wave.open(cast(BinaryIO, sound))
+        file = wav.Sound(sound, head)
         if _is_plain(file):
-            block = _BLOCK // (2 * file.getnchannels())
-            return file.getframerate(), file.getnchannels(), wav.blocks(file, "standard input", block)
-    raise DataError("standard input", None, f"a sound with a header must be {_PLAIN}")
+            rate, channels = file.getframerate(), file.getnchannels()
+            return rate, channels, _in_phase(wav.blocks(file, name, _BLOCK // (2 * channels)), channels, name)
+    raise DataError(name, None, f"a sound with a header must be {_PLAIN}")
 
 
 def _converted(path: str) -> bytes:

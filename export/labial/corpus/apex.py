@@ -5,7 +5,6 @@ The envelope is the root mean square of the samples under a Hann window of `WIND
 
 from __future__ import annotations
 
-import wave
 from dataclasses import replace
 from typing import Sequence, Tuple
 
@@ -47,7 +46,7 @@ def read_wave(path: PathLike) -> Tuple[np.ndarray, int]:
     """The samples of a WAV file of 16 bits, (N,) float64, the mean of its channels, and their rate. Raises DataError
     for any other file."""
     try:
-        with open(path, "rb") as file, wave.open(file) as sound:
+        with open(path, "rb") as file, wav.Sound(file) as sound:
             if sound.getsampwidth() != 2:
                 raise DataError(path, None, f"samples of {8 * sound.getsampwidth()} bits, not of 16")
             data = b"".join(wav.blocks(sound))

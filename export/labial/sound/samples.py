@@ -13,6 +13,7 @@ import soxr
 from labial.corpus.formats import VIDEOS
 from labial.errors import DataError, PathLike, needs
 from labial.files import limits
+from labial.files.channels import Phase
 from labial.files.frames import spans
 
 #: Samples per second of the recogniser's models.
@@ -25,8 +26,9 @@ _BLOCK, _NUMBERS = 10, 4_000_000
 
 
 def read_sound(path: PathLike) -> np.ndarray:
-    """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels; full scale is 1. For a video, if the
-    package av is installed, its sound from the video's start on.
+    """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels or, where they cancel
+    each other, the first one; full scale is 1. For a video, if the package av is installed, its sound from the video's
+    start on.
 
     Raises DataError for a file that is not a sound or is beyond :mod:`labial.files.limits`, for samples that are not
     finite and for a file without samples.
@@ -39,11 +41,13 @@ def read_sound(path: PathLike) -> np.ndarray:
             if not low <= rate <= high:
                 raise DataError(path, None, f"a rate of {rate:,} samples per second is not within {low:,} .. {high:,}")
             limits.refuse(path, "it has", sound.channels, limits.SOUND_CHANNELS, "channels")
+            phase = Phase(path)
             resampler = soxr.ResampleStream(rate, RATE, 1, dtype="float32")
             while True:
                 block = sound.read(min(_BLOCK * rate, _NUMBERS // sound.channels), dtype="float32", always_2d=True)
                 last = len(block) == 0
-                blocks.append(resampler.resample_chunk(block.mean(axis=1), last=last))
+                heard = block[:, 0] if phase.cancels(block, 1.0) else block.mean(axis=1)
+                blocks.append(resampler.resample_chunk(heard, last=last))
                 limit.add(len(blocks[-1]))
                 if last:
                     break
