@@ -103,7 +103,7 @@ def npm(bench: Bench) -> None:
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "web" / "labial.wasm"
-    names = ("index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
+    names = ("entries.js", "index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
              "unpack.js")
     scripts = [folder / "npm" / name for name in names]
     laughter = folder / "npm-laughter" / "index.js"
@@ -113,7 +113,7 @@ def npm(bench: Bench) -> None:
     bench.add("wasm", "laughter, compressed", _compressed(laughter), "bytes",
               ["gzip", "-9c", laughter, "|", "wc", "-c"], compiler)
     for model in ("small", "large"):
-        hearing = [folder / "npm-hearing" / f"{name}.js" for name in ("index", "hearing", "tap", model)]
+        hearing = [folder / "npm-hearing" / f"{name}.js" for name in ("index", "tap", model)]
         bench.add("wasm", f"hearing by the {model} model, each script compressed", sum(map(_compressed, hearing)),
                   "bytes", ["gzip", "-9c", *hearing, "|", "wc", "-c"], compiler)
     words = sorted((folder / "npm-words").glob("*.js"))
