@@ -113,6 +113,17 @@ class _Field:
         return value if value is not None and value >= 1.0 else 0.0
 
 
+class _Column(NamedTuple):
+    """Times of items, and what they are divided by."""
+
+    values: List[Any]
+    divisor: float
+
+    def time(self, number: int) -> Optional[float]:
+        """A time in seconds; None where it is no number from 0 on."""
+        return _number(self.values[number], self.divisor)
+
+
 def _step(name: str) -> Tuple[str, int, bool]:
     """A name, how many lists are in it, and whether it is looked up as it is written."""
     depth, bare = name.count("[]"), name.replace("[]", "")
@@ -250,46 +261,54 @@ class _Tell:
         """Of an object, lists of the same length."""
         value = self.text.found(one)[0]
         texts = ["", *value, ""] if isinstance(value, str) else _listed(value)
-        lists: List[Optional[List[Any]]] = [texts]
-        divisors = [1.0]
-        for field in (self.start, self.span, self.length, self.end):
-            value, number = _MISSING, 0
-            if field is not None and not (field is self.end and lists[3] is not None):
-                value, number = field.found(one)
-            lists.append(None if value is _MISSING else _listed(value))
-            divisors.append(1.0 if field is None else field.divisor(number, one, one))
-            if field is not None and value is not _MISSING and lists[-1] is None:
-                odd.add(one, "{!r} is {}, not a list", field.name, value)
-                return
-        _, starts, spans, lengths, ends = lists
+        columns = self._columns(one, odd)
+        if columns is None:
+            return
+        starts, spans, lengths, ends = columns
         if texts is None or (spans is None and lengths is None and ends is None):
             missing = self.text if texts is None else self.span or self.end or self.length
             odd.add(one, "no field {!r}", missing.name if missing else "")
             return
         if spans is not None:
-            pairs = [_listed(pair) or [] for pair in spans]
-            starts, ends = ([pair[k] if len(pair) == 2 else None for pair in pairs] for k in (0, 1))
-            divisors[4] = divisors[1] = divisors[2]
-        counts = {len(found) for found in (texts, starts, lengths, ends) if found is not None}
+            pairs = [_listed(pair) or [] for pair in spans.values]
+            starts, ends = (_Column([pair[k] if len(pair) == 2 else None for pair in pairs], spans.divisor)
+                            for k in (0, 1))
+        counts = {len(texts), *(len(column.values) for column in (starts, lengths, ends) if column is not None)}
         if len(counts) > 1 or (starts is None and self.start is not None):
             odd.add(one, "{!r} and their times are not of one length", self.text.name)
             return
         moment = 0.0
         for number, value in enumerate(texts):
             text = self._text(value, one, odd)
-            start = moment if starts is None else _number(starts[number], divisors[1])
-            length = None if lengths is None else _number(lengths[number], divisors[3])
-            end = None if ends is None else _number(ends[number], divisors[4])
+            start = moment if starts is None else starts.time(number)
+            length = None if lengths is None else lengths.time(number)
+            end = None if ends is None else ends.time(number)
             if start is not None and length is not None:
                 end = start + length
             if start is None or end is None:
                 wrong = starts if start is None else ends if lengths is None else lengths
                 odd.add(one, "a time of {!r} is {}, not a number from 0 on", self.text.name,
-                        wrong[number] if wrong else None)
+                        wrong.values[number] if wrong else None)
                 continue
             moment = end
             if text is not None:
                 yield text, start, end, one
+
+    def _columns(self, one: Entry, odd: Odd) -> Optional[List[Optional[_Column]]]:
+        """The lists of starts, spans, lengths and ends of an object, None for those that it lacks; ends only where
+        there are no lengths. None, and what is odd, where one is no list."""
+        columns: List[Optional[_Column]] = []
+        for field in (self.start, self.span, self.length, self.end):
+            if field is None or (field is self.end and columns[2] is not None):
+                columns.append(None)
+                continue
+            value, number = field.found(one)
+            values = None if value is _MISSING else _listed(value)
+            if value is not _MISSING and values is None:
+                odd.add(one, "{!r} is {}, not a list", field.name, value)
+                return None
+            columns.append(None if values is None else _Column(values, field.divisor(number, one, one)))
+        return columns
 
     def _text(self, value: Any, place: Entry, odd: Odd) -> Optional[str]:
         value = getattr(value, "value", value)  # of an enumeration

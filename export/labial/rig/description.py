@@ -263,7 +263,7 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
     """An output. Its numbers are checked as the description has them, so that errors quote what its author wrote."""
     table = Table(path, f"output.{name}.", content, _OUTPUT_KEYS)
     alone = "from" not in content and "visemes" in content  # it follows sounds, not FAPs
-    weights, reach = ((0.0,) * CHANNELS, 1.0) if alone else _source(table)
+    weights, reach = ((0.0,) * CHANNELS, None) if alone else _source(table)
     closed = table.number("closed") if "closed" in content else None
     rest = "closed" if closed is not None and "neutral" not in content else "neutral"  # the key of the neutral value
     neutral = table.number(rest)
@@ -276,34 +276,53 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
                                   + (", not both" if "full" in content else ""))
     invert = table.flag("invert", False)
     if "full" in content:
-        if invert:
-            raise table.error("invert", "goes with gain; with full, say where full lies instead")
-        full = table.number("full")
-        if full == neutral:
-            raise table.error("full", f"is the same as {rest}: the output would not move")
-        if "reach" in content:
-            if alone:
-                raise table.error("reach", "goes with from: how many FAP units is full?")
-            reach = table.number("reach")
-        if reach is None:
-            raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
-        if not reach > 0:
-            raise table.error("reach", f"{reach:g} is not positive")
+        full, gain = _full(table, neutral, rest, reach, alone)
         ends = (neutral, full) if closed is None else (neutral, full, closed)
-        gain, low, high = 0.0 if alone else (full - neutral) / reach, min(ends), max(ends)
-        minimum = table.number("minimum") if "minimum" in content else low
-        maximum = table.number("maximum") if "maximum" in content else high
+        minimum = table.number("minimum") if "minimum" in content else min(ends)
+        maximum = table.number("maximum") if "maximum" in content else max(ends)
     else:
         if "reach" in content:
             raise table.error("reach", "goes with full, not with gain")
         gain, minimum, maximum = table.number("gain"), table.number("minimum"), table.number("maximum")
         if gain == 0:
             raise table.error("gain", "is zero: the output would not move")
-    slew, acceleration = (table.number(key) if key in content else 0.0 for key in ("slew", "acceleration"))
+    slew, acceleration, deadband = _movement(table, minimum, maximum)
+    _check_values(table, unit, numbers, minimum, maximum)
+    of, each = numbers.value, numbers.each
+    return Output(name, weights, gain * each, of(neutral), of(minimum), of(maximum), invert, slew * each,
+                  "gain" in content, None if closed is None else of(closed), deadband * each, acceleration * each,
+                  tuple((of(linear), of(bent)) for linear, bent in _curve(table, unit, numbers, rest)),
+                  tuple(amount * each for amount in _visemes(table)))
+
+
+def _full(table: Table, neutral: float, rest: str, reach: Optional[float], alone: bool) -> Tuple[float, float]:
+    """The value at full extent, and the units per FAP unit that lead there from the neutral value, which the key `rest`
+    has: none for an output that follows sounds alone. `reach` is the usual one, where there is one."""
+    if table.flag("invert", False):
+        raise table.error("invert", "goes with gain; with full, say where full lies instead")
+    full = table.number("full")
+    if full == neutral:
+        raise table.error("full", f"is the same as {rest}: the output would not move")
+    if alone:
+        if "reach" in table.content:
+            raise table.error("reach", "goes with from: how many FAP units is full?")
+        return full, 0.0
+    if "reach" in table.content:
+        reach = table.number("reach")
+    if reach is None:
+        raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
+    if not reach > 0:
+        raise table.error("reach", f"{reach:g} is not positive")
+    return full, (full - neutral) / reach
+
+
+def _movement(table: Table, minimum: float, maximum: float) -> Tuple[float, float, float]:
+    """Slew, acceleration and deadband; 0 for those that are not given."""
+    slew, acceleration, deadband = (table.number(key) if key in table.content else 0.0
+                                    for key in ("slew", "acceleration", "deadband"))
     for key, value in (("slew", slew), ("acceleration", acceleration)):
-        if key in content and value <= 0:
+        if key in table.content and value <= 0:
             raise table.error(key, f"{value:g} is not positive; leave it out for no limit")
-    deadband = table.number("deadband") if "deadband" in content else 0.0
     if deadband < 0:
         raise table.error("deadband", f"{deadband:g} is negative")
     if minimum > maximum:
@@ -311,12 +330,7 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
     if deadband > maximum - minimum:
         raise table.error("deadband", f"{deadband:g} is more than the travel from {minimum:g} to {maximum:g}: the "
                                       "output would not move")
-    _check_values(table, unit, numbers, minimum, maximum)
-    of, each = numbers.value, numbers.each
-    return Output(name, weights, gain * each, of(neutral), of(minimum), of(maximum), invert, slew * each,
-                  "gain" in content, None if closed is None else of(closed), deadband * each, acceleration * each,
-                  tuple((of(linear), of(bent)) for linear, bent in _curve(table, unit, numbers, rest)),
-                  tuple(amount * each for amount in _visemes(table)))
+    return slew, acceleration, deadband
 
 
 def _visemes(table: Table) -> Row:
