@@ -1,5 +1,5 @@
-"""The samples of WAV files; channels that cancel each other, as those of a recording with one of two plugs the wrong way
-round."""
+"""The samples of WAV files; channels that cancel each other, as those of a recording with one of two plugs the wrong
+way round."""
 
 from __future__ import annotations
 
