@@ -105,8 +105,9 @@ function faces(folder, ...paths) {
 
 function types(folder, path) {
     for (const [, name, text] of read(path).matchAll(/^declare module "labial\/(.+)\.js" \{\n([^]*?)^\}\n/gm)) {
-        const own = text.replace(/^ {4}/gm, "").replaceAll(' from "labial"', ' from "./index.js"');
-        writeFileSync(join(folder, `${name}.d.ts`), own.replaceAll(' from "labial/', ' from "./'));
+        const own = text.replace(/^ {4}/gm, "").replace(/^global /gm, "declare global ");
+        const paths = own.replaceAll(' from "labial"', ' from "./index.js"').replaceAll(' from "labial/', ' from "./');
+        writeFileSync(join(folder, `${name}.d.ts`), paths);
     }
 }
 

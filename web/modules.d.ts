@@ -48,7 +48,7 @@ declare module "labial/labial-mouth.js" {
     /** Defines an element, unless there is one of this name. */
     export function define(name: string, element: CustomElementConstructor): void;
 
-    declare global {
+    global {
         interface HTMLElementTagNameMap {
             "labial-mouth": LabialMouth;
         }
@@ -76,7 +76,7 @@ declare module "labial/labial-face.js" {
         set caption(text: string | null);
     }
 
-    declare global {
+    global {
         interface HTMLElementTagNameMap {
             "labial-face": LabialFace;
         }
