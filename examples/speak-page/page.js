@@ -1,10 +1,9 @@
 // The page: speaks what is typed, with the lips in step.
 import start from "@echogarden/espeak-ng-emscripten";
-import { base64, files, size } from "espeak-ng-data"; // of build.mjs
+import { LANGUAGES, base64, files, size } from "espeak-ng-data"; // of build.mjs
 import { Labial } from "labial";
 import { fromEspeak } from "labial/espeak.js";
 import "labial/labial-face.js";
-import { LANGUAGES } from "./languages.mjs";
 
 const [face, form, language, text, status, voice] = ["face", "form", "language", "text", "status", "voice"]
     .map((id) => document.getElementById(id));
