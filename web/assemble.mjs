@@ -6,7 +6,9 @@
 //     node assemble.mjs model FILE WASM NAME NOTICE   the model that a module exports, as a binary one, in the same way
 //     node assemble.mjs table FILE JSON               the table of services, without what only readers of it need
 //     node assemble.mjs faces FOLDER DESCRIPTION...   the types of all faces' weights
+//     node assemble.mjs types FOLDER TYPES            the types of each module that TYPES declares
 //     node assemble.mjs frameworks FOLDER             the types of the elements in React, Svelte and Vue
+//     node assemble.mjs readme FILE README NAME       the part of README that is about the package of this name
 //     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
 //     node assemble.mjs manifest FOLDER PACKAGES NAME VERSION   package.json, and index.d.ts where PACKAGES has it
 import { readFileSync, writeFileSync } from "node:fs";
@@ -101,6 +103,14 @@ function faces(folder, ...paths) {
         "\nexport type Face = keyof Faces;\n");
 }
 
+function types(folder, path) {
+    for (const [, name, text] of read(path).matchAll(/^declare module "labial\/(.+)\.js" \{\n([^]*?)^\}\n/gm)) {
+        const own = text.replace(/^ {4}/gm, "").replace(/^global /gm, "declare global ");
+        const paths = own.replaceAll(' from "labial"', ' from "./index.js"').replaceAll(' from "labial/', ' from "./');
+        writeFileSync(join(folder, `${name}.d.ts`), paths);
+    }
+}
+
 /** The elements in the templates of frameworks: `import type {} from "labial/react"`, "labial/svelte" or "labial/vue". */
 function frameworks(folder) {
     const imports = `import type { LabialFace } from "./labial-face.js";
@@ -152,6 +162,12 @@ declare module "vue" {
     }
 }
 
+function readme(file, all, name) {
+    const part = read(all).split(/^(?=# )/m).find((text) => text.startsWith(`# ${name}\n`));
+    if (!part) throw new Error(`${all}: nothing about ${name}`);
+    writeFileSync(file, `${part.trimEnd()}\n`);
+}
+
 /** The code's licence, then the notices of the models and tables that are in a package, from NOTICE. */
 function licence(file, code, notice, ...names) {
     const sections = new Map([...read(notice).matchAll(/^(\S.*):\n\n((?: {4}.*\n|\n)+)/gm)]
@@ -177,4 +193,4 @@ function manifest(folder, packages, name, version) {
 
 const [, , what, ...rest] = process.argv;
 const data = (file, wasm, notice) => packed(file, readFileSync(wasm), notice);
-await { scripts, text, data, table, model, faces, frameworks, licence, manifest }[what](...rest);
+await { scripts, text, data, table, model, faces, types, frameworks, readme, licence, manifest }[what](...rest);

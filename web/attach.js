@@ -1,4 +1,4 @@
-// Finds out which weights a loaded avatar takes, and moves it. attach.d.ts documents it.
+// Finds out which weights a loaded avatar takes, and moves it. modules.d.ts documents it.
 import { LabialError, heard } from "./memory.js";
 
 /** Milliseconds in which a mouth comes to rest. */

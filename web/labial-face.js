@@ -1,5 +1,5 @@
 // <labial-face>: <labial-mouth> with a whole face around it, captions, a name for screen readers, and a place in the order
-// of the keyboard. labial-face.d.ts documents it.
+// of the keyboard. modules.d.ts documents it.
 import { LabialMouth, define } from "./labial-mouth.js";
 import { createFace } from "./mouth.js";
 

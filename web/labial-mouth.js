@@ -1,4 +1,4 @@
-// <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. labial-mouth.d.ts
+// <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. modules.d.ts
 // documents it.
 import { heard } from "./memory.js";
 import { CHANNELS, createMouth, follow } from "./mouth.js";

@@ -8,13 +8,22 @@ import { copyFileSync, mkdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { gzipSync } from "node:zlib";
-import { LANGUAGES } from "./languages.mjs";
+
+/** What the page speaks: espeak-ng's names of voices, and the first part of their data's names. Add a row, and build. */
+const LANGUAGES = [
+    { voice: "en-us", data: "en", name: "English", text: "Papa may be by the sea, but mama bakes a big apple pie." },
+    { voice: "de", data: "de", name: "Deutsch", text: "Papa mag am Abend bei Mama ein paar Pflaumen probieren." },
+    { voice: "es", data: "es", name: "Español", text: "Papá compra pan y miel para mamá en el bonito pueblo." },
+    { voice: "fr", data: "fr", name: "Français", text: "Papa apporte un beau bouquet de pivoines à maman." },
+    { voice: "it", data: "it", name: "Italiano", text: "Il babbo prepara un piatto di pasta per la mamma." },
+    { voice: "hi", data: "hi", name: "हिन्दी", text: "मेरी माँ बाज़ार में पके आम और पपीता बेचती है।" },
+];
 
 const own = import.meta.dirname ?? dirname(new URL(import.meta.url).pathname);
 const out = process.argv[2] ?? "page";
 const espeak = dirname(createRequire(import.meta.url).resolve("@echogarden/espeak-ng-emscripten"));
 
-/** The data of the page's languages: of 24 MB for all that espeak-ng speaks, one or two. The module's script names the
+/** The page's languages and their data: of 24 MB for all that espeak-ng speaks, one or two. The module's script names the
  * files and their places. */
 function data() {
     const script = readFileSync(join(espeak, "espeak-ng.js"), "utf8");
@@ -29,7 +38,8 @@ function data() {
     const used = Buffer.concat(parts.map(({ start, length }) => bytes.subarray(start, start + length)));
     const base64 = gzipSync(used, { level: 9 }).toString("base64");
     const files = parts.map(({ start, length }) => ({ start, length }));
-    return `export const size = ${bytes.length}, files = ${JSON.stringify(files)}, base64 = "${base64}";`;
+    return `export const LANGUAGES = ${JSON.stringify(LANGUAGES)}, size = ${bytes.length}, files = ${JSON.stringify(files)}, ` +
+        `base64 = "${base64}";`;
 }
 
 mkdirSync(out, { recursive: true });

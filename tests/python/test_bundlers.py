@@ -42,6 +42,7 @@ def app(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The app, with the packages installed."""
     folder = tmp_path_factory.mktemp("app") / "app"
     shutil.copytree(FOLDER / "app", folder)
+    (folder / "package.json").write_text('{ "type": "module" }')
     install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
     return folder
 

@@ -29,7 +29,6 @@ from models import write_wav
 from packages import SOURCE, needs_runtime
 from packages import run as ran
 from test_hearing import voice
-from voices import Piper
 
 PI = SOURCE / "examples" / "pi"
 
@@ -219,7 +218,7 @@ def test_piper_tells_its_phonemes(monkeypatch: pytest.MonkeyPatch) -> None:
     module = types.SimpleNamespace(PiperVoice=types.SimpleNamespace(load=lambda path, include_alignments: voice))
     monkeypatch.setitem(sys.modules, "piper", module)  # type: ignore[arg-type]
     monkeypatch.setattr(labial, "render", lambda timings, **options: timings)
-    said = Piper("voice.onnx").say("mabi")
+    said = speak.Piper("voice.onnx").say("mabi")
     assert len(said.sound) == 2 * (4 * 2205 + 2 * 1102) and said.rate == 22050
     labels = [label for label, _ in said.motion]
     assert labels[0] == "SIL" and labels[1] == "M" and "B" in labels and labels[-1] in ("IY", "IH")

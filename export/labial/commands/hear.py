@@ -182,9 +182,7 @@ def _in_phase(blocks: Iterator[bytes], channels: int, path: str) -> Iterator[byt
     first."""
     import numpy as np
 
-    from labial.files.channels import Phase
-
-    phase = Phase(path)
+    phase = wav.Phase(path)
     for block in blocks:
         whole = len(block) // 4 * 4
         if channels == 2:

@@ -13,8 +13,8 @@ import soxr
 from labial.corpus.formats import VIDEOS
 from labial.errors import DataError, PathLike, needs
 from labial.files import limits
-from labial.files.channels import Phase
 from labial.files.frames import spans
+from labial.files.wav import Phase
 
 #: Samples per second of the recogniser's models.
 RATE = 16000
