@@ -66,7 +66,18 @@ else()
 endif()
 
 function(labial_pkg_config name description requires library cflags)
-  configure_file("${PROJECT_SOURCE_DIR}/cmake/labial.pc.in" "${PROJECT_BINARY_DIR}/${name}.pc" @ONLY)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/${name}.pc" @ONLY CONTENT [[
+prefix=@labial_pc_prefix@
+includedir=@labial_pc_includedir@
+libdir=@labial_pc_libdir@
+
+Name: @name@
+Description: @description@
+Version: @PROJECT_VERSION@
+Requires: @requires@
+Cflags: @cflags@
+Libs: -L${libdir} -l@library@
+]])
   install(FILES "${PROJECT_BINARY_DIR}/${name}.pc" DESTINATION "${labial_pc_folder}")
 endfunction()
 
