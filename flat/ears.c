@@ -1,7 +1,7 @@
 /*
- * ears.c - hearing without structures (ears.h).
+ * ears.c - hearing without structures (flat.h).
  */
-#include "ears.h"
+#include "flat.h"
 
 #include <string.h>
 

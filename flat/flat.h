@@ -3,26 +3,31 @@
  * must know. Python calls it by ctypes (export/labial/core/library.py), JavaScript as a WebAssembly module (web). All
  * memory is the caller's, aligned to eight bytes; nothing here allocates.
  *
- * Results are those of labial/labial.h. What is not said here is as in the library's headers.
+ * Results are those of labial/labial.h. What is not said here is as in the library's headers. Faces, hearing, words and
+ * voices have a section and a file each; the rest is in flat.c.
  */
 #ifndef LABIAL_FLAT_H
 #define LABIAL_FLAT_H
 
 #include "labial/blend.h"
 #include "labial/blob.h"
+#include "labial/face.h"
+#include "labial/hear.h"
 #include "labial/labial.h"
 #include "labial/laugh.h"
 #include "labial/names.h"
 #include "labial/rig.h"
 #include "labial/timings.h"
 #include "labial/visemes.h"
+#include "labial/voice.h"
+#include "labial/words.h"
 
 /* Version of this interface; the Python package refuses a library of another one. */
 #define FLAT_INTERFACE 8
 
 /* Stands before each function that other languages call; nothing else leaves the module or the shared library, where
  * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are declared
- * here and in the other headers of this folder, and nowhere else. */
+ * here and nowhere else. */
 #if defined(__wasm__)
 #define FLAT(name) __attribute__((export_name(#name)))
 #elif defined(_WIN32)
@@ -167,5 +172,165 @@ FLAT(weight_name) const char *weight_name(unsigned face, unsigned weight);
 FLAT(weigh) void weigh(unsigned face, const int16_t *faps, const uint8_t *shares, int32_t *out);
 FLAT(attribution) const char *attribution(void);
 #endif
+
+/* ---- Faces (servos.c; labial/face.h) ----------------------------------------------------------------------------- */
+
+/* A face with its rig; its memory follows. */
+typedef struct {
+    labial_face_t face;
+    labial_rig_t rig;
+} servos_t;
+
+/* Bytes of a face of so many outputs, 1 .. 65535, that looks `ahead` frames ahead, up to LABIAL_FACE_AHEAD_MAX. */
+FLAT(servos_size) uint32_t servos_size(unsigned outputs, unsigned ahead);
+
+/* The outputs must stay where they are, and so must the face. */
+FLAT(servos_init)
+int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned count, unsigned ahead);
+FLAT(servos_frame) int servos_frame(servos_t *servos, const int16_t *faps, const uint8_t *shares);
+FLAT(servos_values) int servos_values(servos_t *servos, const int32_t *wanted);
+FLAT(servos_tick) int servos_tick(servos_t *servos, int32_t *values);
+FLAT(servos_play) int servos_play(servos_t *servos);
+FLAT(servos_skip) int servos_skip(servos_t *servos, unsigned count);
+FLAT(servos_cancel) int servos_cancel(servos_t *servos, uint32_t milliseconds);
+FLAT(servos_soft_start) int servos_soft_start(servos_t *servos, unsigned ticks);
+FLAT(servos_attached) unsigned servos_attached(const servos_t *servos);
+FLAT(servos_place) int servos_place(servos_t *servos, const int32_t *values);
+
+/* ---- Hearing (ears.c; labial/hear.h) ----------------------------------------------------------------------------- */
+
+/* A stream of sound with all that belongs to it. */
+typedef struct {
+    labial_hear_t hear;
+    /* Where the frames of the present call go, their sounds, and the stretches of one class; null: nowhere. */
+    int16_t *faps;
+    uint8_t *visemes;
+    uint32_t *stretches;
+    uint32_t room;        /* for each */
+    uint32_t frame_count; /* how many there were in the last call */
+    uint32_t stretch_count;
+    uint32_t workspace[LABIAL_HEAR_WORKSPACE_SIZE(LABIAL_HEAR_UNITS_MAX, 255) / 4u];
+} ears_t;
+
+FLAT(ears_size) uint32_t ears_size(void);
+
+/* The bundled models of hearing by number: name and tables, null beyond the last. */
+FLAT(hearing_name) const char *hearing_name(unsigned number);
+FLAT(hearing_model) const labial_hear_model_t *hearing_model(unsigned number);
+
+/* Of a bundled model: how many classes it has, and the name of each, null beyond the last. */
+FLAT(hearing_classes) unsigned hearing_classes(unsigned number);
+FLAT(hearing_class) const char *hearing_class(unsigned number, unsigned shown);
+
+FLAT(ears_init)
+int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels);
+
+/* Milliseconds from the begin of a frame until it is known. */
+FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);
+
+/* These write the frames that they deliver to `faps`, 13 numbers each, the shares of their sounds to `visemes`, 15 each,
+ * and the stretches of one class to `stretches`, class, first frame and number of frames, up to `room` of each. They
+ * return how many frames there were, or an error; ears_stretches() is how many stretches. */
+FLAT(ears_push)
+int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint8_t *visemes,
+              uint32_t *stretches, uint32_t room);
+FLAT(ears_end) int ears_end(ears_t *ears, int16_t *faps, uint8_t *visemes, uint32_t *stretches, uint32_t room);
+FLAT(ears_cancel)
+int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint8_t *visemes, uint32_t *stretches,
+                uint32_t room);
+FLAT(ears_stretches) uint32_t ears_stretches(const ears_t *ears);
+FLAT(ears_exact) int ears_exact(ears_t *ears, unsigned exact);
+FLAT(ears_level) unsigned ears_level(const ears_t *ears);
+FLAT(ears_set_level) int ears_set_level(ears_t *ears, unsigned level);
+FLAT(ears_articulation) int ears_articulation(ears_t *ears, unsigned percent);
+FLAT(ears_restart) int ears_restart(ears_t *ears);
+
+/* ---- Words to phonemes, with the tables words_en (words.c; labial/words.h) --------------------------------------- */
+
+/* A part of its own with voices: in npm it is the module of the package labial-words. */
+
+/* Bytes of a stream of words, of what goes from word to word, and of `count` words of the caller's own. */
+FLAT(words_size) uint32_t words_size(void);
+FLAT(words_context_size) uint32_t words_context_size(void);
+FLAT(words_own_size) uint32_t words_own_size(unsigned count);
+
+/* Words of the caller's own from `packed`, which must stay where it is: of each the text, NUL, the number of its
+ * phonemes and these. Returns what the functions below take as `own`, at `memory`. */
+FLAT(words_own) const labial_words_own_t *words_own(void *memory, unsigned count, const char *packed);
+
+/* The label of a phoneme, "" beyond the last. */
+FLAT(words_label) const char *words_label(unsigned phoneme);
+
+/* Reads the next word of a text; `context` is all zero at its beginning. `out` has 3 + 3 * LABIAL_WORDS_PHONEMES bytes:
+ * the number of phonemes, that of the word's characters, how many phonemes the word before loses at its end; then of each
+ * phoneme its number, its character and whether a spoken word begins. Returns the word's kind. */
+FLAT(words_read)
+int words_read(const labial_words_own_t *own, labial_words_context_t *context, const char *text, uint32_t size,
+               uint8_t *out);
+
+/* A stream of words; words_next() writes a phoneme and its milliseconds. */
+FLAT(words_init) int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset);
+/* Other words of the caller's own, for the words that follow. */
+FLAT(words_pronounce) void words_pronounce(labial_words_t *stream, const labial_words_own_t *own);
+FLAT(words_push)
+int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end);
+FLAT(words_push_characters)
+int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
+                          unsigned count);
+FLAT(words_end) int words_end(labial_words_t *stream);
+FLAT(words_restart) int words_restart(labial_words_t *stream);
+FLAT(words_next) int words_next(labial_words_t *stream, uint32_t *out);
+
+/* ---- A voice that is followed (voice.c; labial/voice.h) ---------------------------------------------------------- */
+
+/* Bytes of a voice with so many places of items (labial/voice.h), and of `count` items of a message. */
+FLAT(voice_size) uint32_t voice_size(const labial_model_t *model, uint32_t places);
+FLAT(voice_items_size) uint32_t voice_items_size(uint32_t count);
+
+/* `numbers` are the model's phonemes of ARPABET in the order of words_label(), 40 of them, which must stay where they
+ * are; null where they are the same. */
+FLAT(voice_init)
+int voice_init(labial_voice_t *voice, const labial_model_t *model, uint32_t places, const uint8_t *numbers,
+               int32_t offset);
+
+/* How words are pronounced from now on: `own` of words_own(), or null; or a function that is asked for each word. */
+FLAT(voice_words) int voice_words(labial_voice_t *voice, const labial_words_own_t *own);
+FLAT(voice_pronounce) int voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own);
+
+/*
+ * A message of `count` items, made at `memory`. `times` are their beginnings and ends, in seconds; a negative end is
+ * one that is not known, and items with other odd times are skipped. Of phonemes, `texts` are their numbers, a byte
+ * each; of other kinds the texts one behind the other, and `sizes` their bytes. `key` is 0 for none, `gap`
+ * milliseconds; `kind` and `counted` are a labial_voice_kind_t and a labial_voice_times_t.
+ */
+FLAT(voice_tell)
+int voice_tell(labial_voice_t *voice, void *memory, uint32_t count, const double *times, const uint16_t *sizes,
+               const char *texts, uint32_t utterance, uint32_t key, uint32_t gap, unsigned kind, unsigned counted);
+
+FLAT(voice_identity) uint32_t voice_identity(const char *text, uint32_t size);
+
+/* Seconds from which the next utterance's times count; a negative number for the end of the one before. */
+FLAT(voice_begin) int voice_begin(labial_voice_t *voice, double at, uint32_t utterance);
+FLAT(voice_finish) int voice_finish(labial_voice_t *voice);
+FLAT(voice_cancel) int voice_cancel(labial_voice_t *voice, uint32_t milliseconds);
+
+/* The next frame if it is due, which it is when `due` or a later one is. */
+FLAT(voice_frame) int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *faps);
+
+/* The shares of its sounds; `shares` are those of the frame before, all 0 at first. */
+FLAT(voice_visemes) int voice_visemes(const labial_voice_t *voice, uint8_t *shares);
+
+/* The number of the frame that comes next; whether nothing more moves; whether it was finished, or cancelled, and
+ * nothing begun since; the next pose on the way to rest after that; items told and skipped, messages dropped. */
+FLAT(voice_next) uint32_t voice_next(const labial_voice_t *voice);
+FLAT(voice_done) int voice_done(labial_voice_t *voice);
+FLAT(voice_finished) int voice_finished(const labial_voice_t *voice);
+FLAT(voice_cancelled) int voice_cancelled(const labial_voice_t *voice);
+FLAT(voice_ease) int voice_ease(labial_voice_t *voice, int16_t *faps);
+FLAT(voice_counts) void voice_counts(const labial_voice_t *voice, uint32_t *out);
+
+/* A model whose tables were copied from another module's memory, `further` bytes behind where they were there (modulo
+ * the size of addresses): sets their addresses. */
+FLAT(voice_move) void voice_move(labial_model_t *model, size_t further);
 
 #endif

@@ -1,7 +1,7 @@
 /*
- * servos.c - faces without structures (servos.h).
+ * servos.c - faces without structures (flat.h).
  */
-#include "servos.h"
+#include "flat.h"
 
 uint32_t servos_size(unsigned outputs, unsigned ahead)
 {

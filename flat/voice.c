@@ -1,7 +1,7 @@
 /*
- * voice.c - a voice that is followed, without structures (voice.h).
+ * voice.c - a voice that is followed, without structures (flat.h).
  */
-#include "voice.h"
+#include "flat.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /*
- * words.c - words to phonemes without structures (words.h).
+ * words.c - words to phonemes without structures (flat.h).
  */
-#include "words.h"
+#include "flat.h"
 
 #include <string.h>
 

@@ -7,7 +7,6 @@
 
 #include <string.h>
 
-#include "followers.h"
 #include "trajectory.h"
 #include "units.h"
 #include "viterbi.h"

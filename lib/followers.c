@@ -1,7 +1,7 @@
 /*
- * followers.c - all channels of a frame, from those that are solved (followers.h).
+ * followers.c - all channels of a frame, from those that are solved (channels.h).
  */
-#include "followers.h"
+#include "channels.h"
 
 #include "fixed.h"
 

@@ -3,8 +3,8 @@
  */
 #include <stddef.h>
 
+#include "channels.h"
 #include "fixed.h"
-#include "followers.h"
 #include "labial/labial.h"
 
 static int is_within(uint32_t value, uint32_t least, uint32_t most)

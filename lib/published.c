@@ -17,7 +17,6 @@
 #include <string.h>
 
 #include "fixed.h"
-#include "followers.h"
 #include "trajectory.h"
 #include "units.h"
 #include "viterbi.h"

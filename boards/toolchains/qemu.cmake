@@ -61,7 +61,6 @@ set(CMAKE_C_COMPILER "${LABIAL_BOARD_COMPILER}")
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 get_filename_component(include "${CMAKE_CURRENT_LIST_DIR}/../include" ABSOLUTE)
 set(CMAKE_C_FLAGS_INIT "${LABIAL_BOARD_CPU} -ffreestanding -isystem ${include}")
-set(CMAKE_ASM_FLAGS_INIT "${LABIAL_BOARD_CPU}")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostdlib")
 set(CMAKE_C_STANDARD_LIBRARIES_INIT "-lgcc") # the compiler's own: division, 64-bit products
 set(CMAKE_EXECUTABLE_SUFFIX_C .elf)

@@ -1,8 +1,6 @@
 /*
- * servo.c - a timer reads the frame that is heard, and the LED controller makes the pulse.
+ * servo.c - the jaw (lips.h): a timer reads the frame that is heard, and the LED controller makes the pulse.
  */
-#include "servo.h"
-
 #include <driver/ledc.h>
 #include <esp_timer.h>
 

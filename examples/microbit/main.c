@@ -2,14 +2,14 @@
  * main.c - a face on a micro:bit: says a sentence and laughs, again whenever button A is pressed.
  *
  * All computing is done here, in the main program, ahead of time: faces go into a queue, from which the timer's
- * interrupt shows one every 20 ms (servos.c).
+ * interrupt shows one every 20 ms (servos.c). With MICROBIT_TRACE it prints what it does, for a run under QEMU.
  */
+#include "board.h"
 #include "face.h"
 #include "labial/face.h"
 #include "nrf51.h"
 #include "script.h"
 #include "servos.h"
-#include "trace.h"
 
 typedef char one_servo_per_output[FACE_OUTPUTS == SERVOS_COUNT ? 1 : -1];
 
@@ -19,6 +19,80 @@ static script_t script;
 static labial_face_t mouth;
 static int32_t room[LABIAL_FACE_SIZE(FACE_OUTPUTS, 0) / 4];
 static int32_t pulses[FACE_OUTPUTS];
+
+/* ---- The text of a run under QEMU -------------------------------------------------------------------------------- */
+
+/* A board without a debugger must not print text; so without MICROBIT_TRACE these calls are empty, and the firmware waits
+ * for its button instead of ending. */
+#if defined(MICROBIT_TRACE)
+
+static uint32_t faces, work, longest;
+
+static void print_lengths(const uint16_t lengths[SERVOS_COUNT])
+{
+    for (unsigned i = 0; i < SERVOS_COUNT; i++) {
+        board_put(' ');
+        board_print_unsigned(lengths[i]);
+    }
+}
+
+static void print_count(const char *name, uint32_t count)
+{
+    board_print(name);
+    board_print_unsigned(count);
+}
+
+/* Prints a shown face: its number, its pulses, and the pulses at the pins. */
+static void trace_face(const servos_face_t *shown)
+{
+    print_count("face ", faces++);
+    print_lengths(shown->lengths);
+    board_print(" measured");
+    print_lengths(shown->measured);
+    board_put('\n');
+}
+
+/* The time that one call of the library took, microseconds. */
+static void trace_work(uint32_t microseconds)
+{
+    work += microseconds;
+    if (microseconds > longest)
+        longest = microseconds;
+}
+
+/* Prints the counters. */
+static void trace_end(void)
+{
+    const servos_counts_t counts = servos_counts();
+    print_count("end faces ", faces);
+    print_count(" late ", counts.late);
+    print_count(" periods ", counts.periods);
+    print_count(" interrupts ", counts.interrupts);
+    print_count(" work ", work);
+    print_count(" longest ", longest);
+    print_count(" stack ", board_stack_left());
+    board_put('\n');
+}
+
+#else
+
+static void trace_face(const servos_face_t *shown)
+{
+    (void)shown;
+}
+
+static void trace_work(uint32_t microseconds)
+{
+    (void)microseconds;
+}
+
+static void trace_end(void)
+{
+}
+
+#endif
+
+/* ---- The face ---------------------------------------------------------------------------------------------------- */
 
 /* Takes shown faces out of the queue. */
 static void tidy(void)

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "drawn.h"
 #include "fixture.h"
 #include "hear_fixture.h"
 #include "hear_parts.h"
-#include "hear_sound.h"
 #include "hears.h"
 #include "labial/hear.h"
 

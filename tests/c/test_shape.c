@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "followers.h"
+#include "channels.h"
 #include "oracle.h"
 #include "shape.h"
 #include "units.h"

@@ -20,9 +20,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "drawn.h"
 #include "fixture.h"
 #include "hear_fixture.h"
-#include "hear_sound.h"
 #include "labial/beside.h"
 #include "labial/face.h"
 #include "labial/laugh.h"

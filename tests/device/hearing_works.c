@@ -3,10 +3,9 @@
  * their CRC-32, and the largest sums. Passes if all are right.
  */
 #include "board.h"
-#include "checksum.h"
 
+#include "drawn.h"
 #include "hear_fixture.h"
-#include "hear_sound.h"
 #include "hear_sums.h"
 #include "hears.h"
 #include "labial/hear.h"

@@ -3,7 +3,7 @@
  * player in tests/python/test_beside.py and of the face in tests/python/test_face.py, which is written anew there.
  */
 #include "board.h"
-#include "checksum.h"
+#include "drawn.h"
 
 #include "labial/beside.h"
 #include "labial/face.h"
@@ -12,7 +12,7 @@ static uint32_t seed = 1, crc = CHECKSUM_BEGIN;
 
 static uint32_t draw(uint32_t below)
 {
-    return checksum_draw(&seed, below);
+    return drawn_below(&seed, below);
 }
 
 static void add(uint32_t byte)

@@ -8,8 +8,8 @@
 #include "labial/laugh.h"
 
 #include "any_model.h"
+#include "channels.h"
 #include "fixed.h"
-#include "followers.h"
 #include "shape.h"
 #include "units.h"
 #include "viterbi.h"

@@ -1,10 +1,18 @@
 /*
- * hear_sound.h - the sounds of hears.py, sample by sample.
+ * drawn.h - what suites and device tests draw from a seed: numbers, and the sounds of hears.py, sample by sample; and the
+ * CRC-32 of what a device test sees.
  */
-#ifndef LABIAL_TEST_HEAR_SOUND_H
-#define LABIAL_TEST_HEAR_SOUND_H
+#ifndef LABIAL_TEST_DRAWN_H
+#define LABIAL_TEST_DRAWN_H
 
 #include <stdint.h>
+
+/* The next number of a seed, less than `below`. */
+static inline uint32_t drawn_below(uint32_t *seed, uint32_t below)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) % below;
+}
 
 /* Sample `at` of the sound with this number, one after the other; `state` is 1 at first. */
 static inline int16_t hear_sound(uint32_t number, uint32_t at, uint32_t *state)
@@ -36,6 +44,18 @@ static inline int16_t hear_sound(uint32_t number, uint32_t at, uint32_t *state)
         break;
     }
     return (int16_t)value;
+}
+
+/* A CRC-32 before any byte; its complement is the sum. */
+#define CHECKSUM_BEGIN 0xffffffffu
+
+/* The CRC-32 after one more byte, the lowest of `byte`. */
+static inline uint32_t checksum_add(uint32_t crc, uint32_t byte)
+{
+    unsigned bit;
+    for (crc ^= byte & 255u, bit = 0; bit < 8; bit++)
+        crc = crc >> 1 ^ (crc & 1u ? 0xedb88320u : 0u);
+    return crc;
 }
 
 #endif
