@@ -410,7 +410,8 @@ TEST(the_queue_knows_its_models)
         assert_int_equal(labial_units_uses(&units, slot, units.frames), 0);
     push(FIXTURE_A, 0, 1), push(FIXTURE_O, 0, 1);
     assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
-    assert_int_equal(labial_units_uses(&units, 1, units.frames), 0);
+    for (unsigned slot = 1; slot < LABIAL_MODELS; slot++)
+        assert_int_equal(labial_units_uses(&units, slot, units.frames), 0);
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
     assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
     assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
