@@ -234,9 +234,10 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
                  run->before == '/' || !labial_words_is_blank(follows)));
     if (run->small != 0u) {
-        if (run->letters[count - 1u].letter == 19u && run->small >> (count - 1u) != 0u)
-            count = owner_length(run) < count ? count - 2u : count - 1u;
-        if ((run->small & 0xffffffffu >> (LABIAL_WORDS_LETTERS - count)) != 0u)
+        if (run->letters[count - 1u].letter != 19u || run->small >> (count - 1u) == 0u) /* no small s */
+            return spelt_small_letters(run);
+        count -= count > 2u && run->letters[count - 2u].letter == 27u ? 2u : 1u;
+        if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
             return spelt_small_letters(run);
     }
     if (count < 2u || count > 5u)
