@@ -4,6 +4,8 @@
  */
 #include "labial/words.h"
 
+#include <string.h>
+
 #include "labial/labial.h"
 #include "words_parts.h"
 
@@ -151,6 +153,16 @@ static unsigned accent_of(const labial_words_place_t *here, uint32_t code)
         if (marks[i] == code)
             return i + 1u;
     return 0;
+}
+
+void labial_words_place(labial_words_place_t *here, const char *text, size_t size, size_t at)
+{
+    memset(here, 0, sizeof *here);
+    here->text = (const unsigned char *)text;
+    here->size = size;
+    here->at = at;
+    here->code = ' ';
+    labial_words_advance(here);
 }
 
 void labial_words_advance(labial_words_place_t *here)

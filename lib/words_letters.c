@@ -94,7 +94,7 @@ static const char short_words[] =
     "UGH\0USE\0GYM\0VIA\0AMY\0AVA\0BYE\0EVA\0IAN\0MIA\0LYNX\0MYTH\0NYMPH\0QUEUE\0";
 static const char shouted_words[] = "AM\0IT\0US\0WHO\0";
 
-/* Small letters without a vowel that are not read one by one: sounds and parts of words. */
+/* Letters without a vowel, not all of them capitals, that are not read one by one: sounds and parts of words. */
 static const char small_sounds[] = "hm\0hmm\0mm\0mhm\0grr\0brr\0pfft\0pff\0pst\0psst\0sh\0shh\0ssh\0tsk\0tss\0tch\0"
                                    "hmph\0nth\0zz\0bzz\0ll\0nt\0th\0nd\0mc\0ng\0";
 
@@ -227,6 +227,7 @@ static unsigned spelt_small_letters(const run_t *run)
 static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
 {
     const char *const letters = run->capitals;
+    const unsigned owner = owner_length(run);
     unsigned count = run->count;
     if (count == 1u)
         return (letters[0] != 'A' && letters[0] != 'I') ||
@@ -236,7 +237,7 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
     if (run->small != 0u) {
         if (run->letters[count - 1u].letter != 19u || run->small >> (count - 1u) == 0u) /* no small s */
             return spelt_small_letters(run);
-        count -= count > 2u && run->letters[count - 2u].letter == 27u ? 2u : 1u;
+        count = owner < count ? owner : count - 1u;
         if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
             return spelt_small_letters(run);
     }

@@ -93,6 +93,9 @@ typedef struct {
 
 /* ---- Characters ------------------------------------------------------------------------------------------------- */
 
+/* Begins at the character at byte `at` of a text of `size` bytes, as if a blank were before it. */
+void labial_words_place(labial_words_place_t *here, const char *text, size_t size, size_t at);
+
 /* Moves on to the next simple character, passing over marks. */
 void labial_words_advance(labial_words_place_t *here);
 

@@ -432,10 +432,7 @@ int labial_words_read_next(const labial_words_model_t *model, const labial_words
     reading.model = model;
     reading.word = word;
     reading.context = context;
-    here->text = (const unsigned char *)text;
-    here->size = size;
-    here->code = ' ';
-    labial_words_advance(here);
+    labial_words_place(here, text, size, 0);
     while (here->code != TEXT_END) {
         is_foreign |= here->code == FOREIGN;
         read_next(&reading, own);

@@ -196,11 +196,7 @@ static unsigned last_character(const char *text, size_t *size)
     if (code >= 0x80u) {
         while (at > 0u && ((unsigned char)text[at] & 0xc0u) == 0x80u)
             at--;
-        memset(&here, 0, sizeof here);
-        here.text = (const unsigned char *)text;
-        here.size = *size;
-        here.at = at;
-        labial_words_advance(&here);
+        labial_words_place(&here, text, *size, at);
         code = here.code;
     }
     *size = at;

@@ -58,6 +58,7 @@ int prove_words_characters(void)
     static unsigned char text[BYTES];
     labial_words_place_t here;
     FILL(text);
+    labial_words_place(&here, (const char *)text, (size_t)Frama_C_interval(0, BYTES), any_size);
     FILL(here);
     here.text = text;
     here.size = (size_t)Frama_C_interval(0, BYTES);

@@ -114,6 +114,7 @@ int main(void)
     FILL(listed);
     listed[23] = '\0';
     word.count = (uint8_t)Frama_C_interval(0, LABIAL_WORDS_PHONEMES);
+    labial_words_place(&reading.here, text, (size_t)Frama_C_interval(0, BYTES), 0);
     FILL(reading);
     reading.model = &model;
     reading.word = &word;
