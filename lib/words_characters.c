@@ -4,8 +4,6 @@
  */
 #include "labial/words.h"
 
-#include <string.h>
-
 #include "labial/labial.h"
 #include "words_parts.h"
 
@@ -157,10 +155,10 @@ static unsigned accent_of(const labial_words_place_t *here, uint32_t code)
 
 void labial_words_place(labial_words_place_t *here, const char *text, size_t size, size_t at)
 {
-    memset(here, 0, sizeof *here);
     here->text = (const unsigned char *)text;
     here->size = size;
     here->at = at;
+    here->characters = here->accent = here->pending = 0;
     here->code = ' ';
     labial_words_advance(here);
 }

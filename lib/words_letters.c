@@ -227,7 +227,6 @@ static unsigned spelt_small_letters(const run_t *run)
 static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shouting)
 {
     const char *const letters = run->capitals;
-    const unsigned owner = owner_length(run);
     unsigned count = run->count;
     if (count == 1u)
         return (letters[0] != 'A' && letters[0] != 'I') ||
@@ -235,6 +234,7 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
                 (labial_words_is_decimal(run->before) || run->before == '&' || run->before == '+' ||
                  run->before == '/' || !labial_words_is_blank(follows)));
     if (run->small != 0u) {
+        const unsigned owner = owner_length(run);
         if (run->letters[count - 1u].letter != 19u || run->small >> (count - 1u) == 0u) /* no small s */
             return spelt_small_letters(run);
         count = owner < count ? owner : count - 1u;
