@@ -99,14 +99,12 @@ def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
     ideal, tables = FloatTables(model), ExportedTables(exported)
     errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
-    return {
-        "solver_largest": float(np.abs(errors).max() / UNIT),
-        "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
-        "window_largest": float(np.abs(lost_by_window).max()),
-        "window_rms": float(np.sqrt(np.mean(lost_by_window**2))),
-        "path_state": float(lost.mean()),
-        "path_worst_channel": float(lost.mean(axis=0).max()),
-    }
+    return {"solver_largest": float(np.abs(errors).max() / UNIT),
+            "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
+            "window_largest": float(np.abs(lost_by_window).max()),
+            "window_rms": float(np.sqrt(np.mean(lost_by_window**2))),
+            "path_state": float(lost.mean()),
+            "path_worst_channel": float(lost.mean(axis=0).max())}
 
 
 def print_utterances(model: Model, corpus: str) -> None:

@@ -46,7 +46,7 @@ TOKENS, PIXELS, FPS = 12, 48, 50
 _PIECE = 10
 #: The sounds that must be told apart, and their visemes.
 SOUNDS: Mapping[str, str] = {"oo": "ou", "oh": "oh", "ee": "ih", "ah": "aa", "m": "PP", "f": "FF", "th": "TH",
-                             "s": "SS", "sh": "CH"}  # fmt: skip
+                             "s": "SS", "sh": "CH"}
 #: The sheet: words, their phonemes, and which of them are drawn under which name.
 WORDS: Sequence[Tuple[str, Mapping[int, str]]] = (
     ("M AA M AA", {0: "m", 1: "ah"}), ("F AE N", {0: "f"}), ("TH IH N", {0: "th"}), ("S IY", {0: "s", 1: "ee"}),
@@ -207,8 +207,7 @@ def own(phonemes: Sequence[Tuple[str, float, float]], at: int, talking_head: boo
 
 def nearest(seen: np.ndarray, models: np.ndarray) -> np.ndarray:
     """(n,) the nearest of (m, k) models to each of (n, k) pictures."""
-    result: np.ndarray = ((seen[:, None, :] - models[None]) ** 2).sum(axis=2).argmin(axis=1)
-    return result
+    return ((seen[:, None, :] - models[None]) ** 2).sum(axis=2).argmin(axis=1)
 
 
 def rows(stage: Stage, motion: Motion) -> List[str]:

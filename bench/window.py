@@ -26,8 +26,7 @@ def motion(sentences: Path, runtime: str, output: Path) -> np.ndarray:
     """(T, 13) FAPs of all sentences by a build of the library."""
     subprocess.run([sys.executable, __file__, str(sentences), str(output)], check=True,
                    env={**os.environ, "LABIAL_RUNTIME": runtime})
-    frames: np.ndarray = np.load(output)
-    return frames
+    return np.load(output)
 
 
 def render(sentences: Path, output: Path) -> None:

@@ -19,7 +19,7 @@ from source import ROOT, PackError, Source, write_text
 ARCHITECTURES = (
     "esp32", "mbed", "mbed_edge", "mbed_giga", "mbed_nano", "mbed_nicla", "mbed_opta", "mbed_portenta", "mbed_rp2040",
     "nrf52", "renesas_portenta", "renesas_uno", "rp2040", "sam", "samd", "stm32", "zephyr",
-)  # fmt: skip
+)
 #: Sketches for an Uno: they play baked motion, without the library.
 WITHOUT_LIBRARY = ("UnoJaw",)
 #: Where the headers lie that sketches share with other examples. A sketch's folder holds copies of them.
@@ -57,12 +57,10 @@ def keywords(source: Source) -> str:
     types = re.findall(r"^\} (labial_\w+);|^typedef .*\(\*(labial_\w+)\)", text, re.MULTILINE)
     functions = re.findall(r"^(?!typedef)\w[\w \t*]*?[ *](labial_\w+)\(", text, re.MULTILINE)
     literals = re.findall(r"\b(LABIAL_[A-Z0-9_]+)\b(?!_H\b)", text)
-    rows = [
-        *((name, "KEYWORD1") for pair in types for name in pair if name),
-        *((name, "KEYWORD2") for name in functions),
-        *((name, "LITERAL1") for name in literals if not name.endswith("_H")),
-        *((model.name, "KEYWORD1") for model in source.models),
-    ]
+    rows = [*((name, "KEYWORD1") for pair in types for name in pair if name),
+            *((name, "KEYWORD2") for name in functions),
+            *((name, "LITERAL1") for name in literals if not name.endswith("_H")),
+            *((model.name, "KEYWORD1") for model in source.models)]
     return "".join(f"{name}\t{kind}\n" for name, kind in sorted(set(rows), key=lambda row: (row[1], row[0])))
 
 
@@ -100,12 +98,10 @@ def write(source: Source, folder: Path) -> None:
             shutil.copyfile(path, src / path.name)
     for path in source.words:
         shutil.copyfile(path, src / path.name)
-    for name, text in (
-        ("LICENSE", source.licence()),
-        ("src/Labial.h", umbrella(source)),
-        ("library.properties", properties(source)),
-        ("keywords.txt", keywords(source)),
-    ):
+    for name, text in (("LICENSE", source.licence()),
+                       ("src/Labial.h", umbrella(source)),
+                       ("library.properties", properties(source)),
+                       ("keywords.txt", keywords(source))):
         write_text(folder / name, text)
     for sketch in sorted((ROOT / "examples" / "arduino").glob("*/*.ino")):
         name = sketch.parent.name

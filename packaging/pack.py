@@ -125,13 +125,11 @@ def main(arguments: Optional[List[str]] = None) -> int:
     """Runs the command; returns its exit status: 0, or 1 when something given cannot be used."""
     parser = argparse.ArgumentParser(prog="pack.py", description="Lays Labial out for other build systems.")
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
-    for kind, text in (
-        ("amalgamation", "two files and the models"),
-        ("arduino", "library for the Arduino IDE"),
-        ("platformio", "folder for lib/ of a PlatformIO project"),
-        ("esp-idf", "folder for components/ of an ESP-IDF project"),
-        ("zephyr", "Zephyr module"),
-    ):
+    for kind, text in (("amalgamation", "two files and the models"),
+                       ("arduino", "library for the Arduino IDE"),
+                       ("platformio", "folder for lib/ of a PlatformIO project"),
+                       ("esp-idf", "folder for components/ of an ESP-IDF project"),
+                       ("zephyr", "Zephyr module")):
         command = kinds.add_parser(kind, help=text)
         command.add_argument("-o", "--output", required=True, metavar="DIR", help="new or empty folder")
         command.add_argument("--models", metavar="FOLDER", help="exported models instead of the bundled ones")

@@ -59,9 +59,8 @@ def environment(folder: Path) -> Path:
     run([sys.executable, "-m", "venv", folder], dict(os.environ), ROOT)
     python = folder / "bin" / "python"
     wanted = ROOT / "packaging" / "wheels.txt"
-    run([python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", "--require-hashes",
-         "-r", wanted],
-        dict(os.environ), ROOT)  # fmt: skip
+    run([python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-deps", "--require-hashes", "-r",
+         wanted], dict(os.environ), ROOT)
     return python
 
 

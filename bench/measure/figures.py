@@ -252,8 +252,7 @@ def porting(source: Sources) -> Iterator[Sentence]:
 
 def packages(source: Sources) -> Iterator[Sentence]:
     """docs/packages.md."""
-    major, minor = (source.constant("include/labial/labial.h", f"LABIAL_VERSION_{part}") for part in
-                    ("MAJOR", "MINOR"))
+    major, minor = (source.constant("include/labial/labial.h", f"LABIAL_VERSION_{part}") for part in ("MAJOR", "MINOR"))
     yield sentence("`find_package(labial {})` accepts any {}, but not {}.",
                    *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
 

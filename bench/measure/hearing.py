@@ -80,6 +80,6 @@ def measure_words(bench: Bench, board: Board, checksums: Dict[str, int]) -> None
     for figure, value in (("words: mean to read one", round(found["read_instructions"] / WORDS)),
                           ("words: worst to read one", found["read_worst"]),
                           ("words: mean to say one", round(found["say_instructions"] / WORDS)),
-                          ("words: worst to say one", found["say_worst"])):  # fmt: skip
+                          ("words: worst to say one", found["say_worst"])):
         bench.add(board.preset, figure, value, "instructions", command, tool_version)
     bench.add(board.preset, "words: stack, painted", found["stack"], "bytes", command, tool_version)

@@ -66,10 +66,9 @@ def measure(bench: Bench, corpus: Optional[str]) -> None:
     """The solver's error and the paths' loss of both models; `corpus` is one of speech."""
     python = python_with_numpy(bench)
     for model, name in MODELS.items():
-        command: List[Union[str, os.PathLike]] = [
-            python, bench.source / "bench" / "accuracy.py", model_path(bench, name), name,
-            bench.build / "bench" / "labial-bench-solve", model,
-        ]
+        command: List[Union[str, os.PathLike]] = [python, bench.source / "bench" / "accuracy.py",
+                                                  model_path(bench, name), name,
+                                                  bench.build / "bench" / "labial-bench-solve", model]
         shown = ["PYTHONPATH=export", "python3", *map(str, command[1:])]
         for where, given in (("drawn streams", []), ("corpus", [corpus])):
             if where == "corpus" and (not corpus or model != "speech"):

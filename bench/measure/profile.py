@@ -64,10 +64,8 @@ def cycles(mnemonic: str, operands: str, core: str = "m0") -> int:
 
 def measure(bench: Bench, rows: List[Row]) -> None:
     """Cycles per frame of both models on every core whose cycles are known; `rows` receives the profile of speech on
-    the first of them, most instructions first.
-
-    Raises LeftOut if the plugin (bench/plugin.c) cannot be compiled or QEMU does not support plugins.
-    """
+    the first of them, most instructions first. Raises LeftOut if the plugin (bench/plugin.c) cannot be compiled or QEMU
+    does not support plugins."""
     for board in (board for board in BOARDS if board.preset in _CYCLES):
         images = build(bench, board)
         for model in ("speech", "laughter"):

@@ -31,7 +31,7 @@ MOTION = ("export/models/speech_en.npz", "export/models/laughter_synthetic.npz",
 STREAMS = ("sentence", "phonemes", "laugh", "vowels", "consonants", "long_vowel", "short_stops", "pauses", "graded")
 #: Voices whose closures are counted, and one to which nothing was fitted.
 VOICES = ("flite:kal", "flite:slt", "flite:rms", "espeak:en-us", "espeak:en-gb-x-rp", "espeak:en-gb-scotland",
-          "espeak:en-us+f2", "espeak:en-us+m3")  # fmt: skip
+          "espeak:en-us+f2", "espeak:en-us+m3")
 OTHER_VOICE = "flite:awb"
 
 Figures = Dict[str, float]
@@ -133,8 +133,7 @@ COMMANDS: Dict[str, Command] = {
 def read(root: Path) -> Dict[str, Dict[str, object]]:
     """The records."""
     path = root / FILE
-    found: Dict[str, Dict[str, object]] = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-    return found
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
 def write(root: Path, records: Mapping[str, Mapping[str, object]]) -> None:

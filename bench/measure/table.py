@@ -98,7 +98,7 @@ SECTIONS: Tuple[Tuple[str, str, Callable[[Figure], bool]], ...] = (
      "level.", _of("wasm")),
     ("Arduino Uno", "Flash of examples/uno without its motion, and of the player of baked motion alone.", _of("uno")),
     ("Speed of the host, one core", "", _on_a_processor("Speed")),
-)  # fmt: skip
+)
 
 
 def _number(value: Optional[float]) -> str:

@@ -47,7 +47,7 @@ __all__ = ["Beside", "Face", "Frame", "Hearing", "Latency", "Model", "Rig", "Str
 _HOMES = {"Beside": "beside", "Face": "face", "Frame": "stream", "Hearing": "hearing", "Latency": "stream",
           "Model": "models", "Rig": "rig", "Stream": "stream", "Voice": "voice", "character_timings": "render",
           "phonemes": "render", "word_timings": "render", "read_timings": "render", "render": "render",
-          "with_sound": "hearing"}  # fmt: skip
+          "with_sound": "hearing"}
 
 
 def __getattr__(name: str) -> Any:

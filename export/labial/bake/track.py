@@ -41,12 +41,8 @@ JAW = Rig("jaw", make_unit("us"), (Output("jaw", _OPENING.weights, 500.0 / (_OPE
 def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,
              shares: Optional[np.ndarray] = None) -> np.ndarray:
     """(T, N) uint8: the rig's outputs for (T, 13) FAPs and, if known, (T, 15) shares of sounds, 0 for an output's
-    minimum and 255 for its maximum.
-
-    FAPs are rounded to integers and converted like ``labial_rig_apply_visemes_ahead`` with all frames in sight, from
-    rest.
-    Raises DataError for limits further apart than `SPAN_MAX`.
-    """
+    minimum and 255 for its maximum. FAPs are rounded to integers and converted like ``labial_rig_apply_visemes_ahead``
+    with all frames in sight, from rest. Raises DataError for limits further apart than `SPAN_MAX`."""
     for output in table:
         if output.maximum - output.minimum > SPAN_MAX:
             raise DataError(rig.path, None, f"output.{output.name}.maximum: more than {SPAN_MAX} {rig.unit.text} above "
@@ -55,8 +51,7 @@ def as_bytes(rig: Rig, table: Sequence[TableOutput], frames: np.ndarray,
     values = np.array(played, dtype=np.int64).reshape(len(frames), len(table))
     low = np.array([output.minimum for output in table])
     span = np.array([max(output.maximum - output.minimum, 1) for output in table])
-    result: np.ndarray = ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
-    return result
+    return ((2 * 255 * (values - low) + span) // (2 * span)).astype(np.uint8)
 
 
 @dataclass(frozen=True)
@@ -68,11 +63,9 @@ class Part:
 
 
 def parts_of(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
-    """Parts of a track, cut in the middle of a pause, or `BEFORE` its end where that is later.
-
-    `pauses` (T,) bool are the frames in pauses. Each part has at most `longest` frames and as many as it can, or ends
-    with the first pause where `longest` is None; a stretch without a pause that is longer is cut where it has to be.
-    """
+    """Parts of a track, cut in the middle of a pause, or `BEFORE` its end where that is later. `pauses` (T,) bool are
+    the frames in pauses. Each part has at most `longest` frames and as many as it can, or ends with the first pause
+    where `longest` is None; a stretch without a pause that is longer is cut where it has to be."""
     cuts = [max((begin + end) // 2, end - BEFORE) for begin, end in spans(pauses) if begin and end < len(pauses)]
     found: List[Part] = []
     begin = 0
@@ -228,11 +221,9 @@ PLAYER = "labial_player.h"
 def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name: Optional[str] = None,
          parts: Optional[str] = None) -> List[str]:
     """Writes a header of `kind`, "track" or "phonemes", and beside a track its player; returns a line for each and for
-    each part of a track.
-
-    `rig` is a rig's description, for a track; a jaw without it. `name` is what C calls it, the file's name without it.
-    `parts` cuts a track in pauses: into parts of so many seconds at most, or in all of them ("pauses").
-    """
+    each part of a track. `rig` is a rig's description, for a track; a jaw without it. `name` is what C calls it, the
+    file's name without it. `parts` cuts a track in pauses: into parts of so many seconds at most, or in all of them
+    ("pauses")."""
     path = Path(output)
     if path.suffix.lower() != ".h":
         raise LabialError(f"{output}: what is written is a C header, whose name ends with .h")

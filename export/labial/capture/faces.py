@@ -36,8 +36,7 @@ class Track:
     @property
     def middle(self) -> np.ndarray:
         """(2,) median of the face's middle, pixels."""
-        result: np.ndarray = np.median([_middle(points) for points in self.points], axis=0)
-        return result
+        return np.median([_middle(points) for points in self.points], axis=0)
 
     @property
     def height(self) -> float:
@@ -46,12 +45,9 @@ class Track:
 
 
 def talker(path: PathLike, times: np.ndarray, seen: Sequence[Sequence[np.ndarray]], face: Optional[str]) -> np.ndarray:
-    """(T, 478, 3) landmarks of the talker's face, NaN where it is not seen.
-
-    `seen` has the landmarks (478, 3), pixels, of every face in each of the frames at `times` (T,), seconds. `face` is
-    one of `WHICH_FACE`; without, there must be one face only, smaller ones in the background aside. Raises DataError
-    where there is none or more than one.
-    """
+    """(T, 478, 3) landmarks of the talker's face, NaN where it is not seen. `seen` has the landmarks (478, 3), pixels,
+    of every face in each of the frames at `times` (T,), seconds. `face` is one of `WHICH_FACE`; without, there must be
+    one face only, smaller ones in the background aside. Raises DataError where there is none or more than one."""
     tracks = _tracks(times, seen)
     if not tracks:
         raise DataError(path, None, "no face is found in any frame")

@@ -89,10 +89,8 @@ def faps(recordings: Sequence[Recording], silence: str) -> List[np.ndarray]:
 
 
 def fill(times: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """`values` (T, 13) with lost frames, which are NaN, interpolated linearly in time, and held at the ends.
-
-    Raises ValueError, which says where, for a gap over `LONGEST_GAP` and for more than `MOST_LOST` of the frames.
-    """
+    """`values` (T, 13) with lost frames, which are NaN, interpolated linearly in time, and held at the ends. Raises
+    ValueError, which says where, for a gap over `LONGEST_GAP` and for more than `MOST_LOST` of the frames."""
     lost = ~np.isfinite(values).all(axis=1)
     if not lost.any():
         return values
@@ -170,5 +168,4 @@ def _protrusion(values: np.ndarray, pucker: Optional[np.ndarray]) -> np.ndarray:
     if pucker is not None:
         return _PUCKER * pucker
     narrowing = -(values[:, _CHANNEL[53]] + values[:, _CHANNEL[54]])
-    result: np.ndarray = _NARROW * np.maximum(narrowing - _NARROW_FROM, 0.0)
-    return result
+    return _NARROW * np.maximum(narrowing - _NARROW_FROM, 0.0)

@@ -33,12 +33,10 @@ _MOST_OFFSET = 5.0  # seconds
 
 def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, given: Given, cutoff: float,
            offset: float = 0.0) -> str:
-    """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary.
-
-    The picture is assumed to be `offset` seconds later than its sound; the summary of speech reports the remaining
-    offset. Recordings in which the face is lost or turned away for too long are omitted with a warning. Raises
-    DataError for malformed files, before anything is written.
-    """
+    """Writes the corpus folder `output` from one talker's landmark files or folders of them; returns a summary. The
+    picture is assumed to be `offset` seconds later than its sound; the summary of speech reports the remaining offset.
+    Recordings in which the face is lost or turned away for too long are omitted with a warning. Raises DataError for
+    malformed files, before anything is written."""
     if not -_MOST_OFFSET <= offset <= _MOST_OFFSET:
         raise LabialError(f"an offset of {1000 * offset:g} ms is not within {-1000 * _MOST_OFFSET:g} .. "
                           f"{1000 * _MOST_OFFSET:g}")
@@ -173,8 +171,7 @@ def _smooth(frames: np.ndarray, fps: float, cutoff: float) -> np.ndarray:
     if cutoff == 0.0 or len(frames) < 2:
         return frames
     sigma = np.sqrt(np.log(2.0)) / (2.0 * np.pi * cutoff)  # seconds
-    result: np.ndarray = gaussian_filter1d(frames, sigma * fps, axis=0, mode="nearest")
-    return result
+    return gaussian_filter1d(frames, sigma * fps, axis=0, mode="nearest")
 
 
 def _line(segment: Segment) -> str:

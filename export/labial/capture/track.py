@@ -28,11 +28,9 @@ MOST_FACES = 4
 
 def landmarks(video: PathLike, output: PathLike, face: Optional[str] = None, task: Optional[PathLike] = None,
               progress: bool = False) -> str:
-    """Writes the landmarks of a video's talker as the .npz that ``labial record`` takes; returns a summary.
-
-    `face` says which face, one of `labial.defaults.WHICH_FACE`, where there is more than one; `task` is the model file
-    of MediaPipe's Face Landmarker, without which its Face Mesh is used. Raises DataError and LabialError.
-    """
+    """Writes the landmarks of a video's talker as the .npz that ``labial record`` takes; returns a summary. `face` says
+    which face, one of `labial.defaults.WHICH_FACE`, where there is more than one; `task` is the model file of
+    MediaPipe's Face Landmarker, without which its Face Mesh is used. Raises DataError and LabialError."""
     tracker = FaceLandmarker(task) if task is not None else FaceMesh()
     times: List[float] = []
     seen: List[Faces] = []

@@ -26,8 +26,7 @@ def add_evaluate(command: argparse.ArgumentParser) -> None:
                          "models are trained on all of the others too")
     command.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
     add_kind(command)
-    command.add_argument("--splits", type=positive, default=SPLITS,
-                         help=f"random 80/20 splits by episode ({SPLITS})")
+    command.add_argument("--splits", type=positive, default=SPLITS, help=f"random 80/20 splits by episode ({SPLITS})")
     command.add_argument("--seed", type=seed, default=0)
     command.add_argument("--methods", default="all", metavar="A,B,...", help="methods to compare (all)")
     add_fps(command)
@@ -164,8 +163,7 @@ def _by_timings(options: argparse.Namespace) -> str:
     chosen = {name: own[name] if name in own else others.method(name, options.npm) for name in names}
     conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))
     with contextlib.nullcontext(options.cache) if options.cache else tempfile.TemporaryDirectory() as cache:
-        sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0)
-                for folder in options.folder]
+        sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0) for folder in options.folder]
         voices = hearing.VOICES if options.voices is None else options.voices
         sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]
     if not sets:

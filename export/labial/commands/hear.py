@@ -216,8 +216,7 @@ def _converted(path: str) -> bytes:
 
     with needs(f"{path}: a sound that is not {_PLAIN}", "align"):
         from labial.sound.samples import read_sound
-    data: bytes = np.clip(np.rint(read_sound(path) * 32767), -32768, 32767).astype("<i2").tobytes()
-    return data
+    return np.clip(np.rint(read_sound(path) * 32767), -32768, 32767).astype("<i2").tobytes()
 
 
 def _parts(hearing: Hearing, blocks: Iterator[bytes]) -> Iterator[np.ndarray]:

@@ -58,8 +58,7 @@ def add_train(command: argparse.ArgumentParser) -> None:
                          "deviations before they are clustered, as --method labial always does; the paper does "
                          "not")
     command.add_argument("--seed", type=seed, default=0)
-    command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1,
-                         help="processes; the result is the same")
+    command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes; the result is the same")
     add_engine(command)
     command.add_argument("--adapt", metavar="MODEL", help="do not train: give a model that was trained with "
                          "--talker-variance the deviation of one talker, from half a minute of him or more")

@@ -55,7 +55,7 @@ _TYPES: Dict[str, Any] = {
     "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,
     "number": c_uint32, "double": c_double, "text": c_char_p, "pointer": c_void_p, "frame": POINTER(c_int16),
     "shares": POINTER(c_uint8),
-}  # fmt: skip
+}
 #: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
 PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)
 #: What the functions' symbols begin with.

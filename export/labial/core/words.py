@@ -112,10 +112,8 @@ def read(text: str, own: Optional[OwnWords] = None) -> Spoken:
 
 
 class WordStream:
-    """Words in time, in milliseconds, to phonemes; `offset` milliseconds are added to all times.
-
-    Raises StreamError where the library refuses a call (labial_words_push() in include/labial/words.h).
-    """
+    """Words in time, in milliseconds, to phonemes; `offset` milliseconds are added to all times. Raises StreamError
+    where the library refuses a call (labial_words_push() in include/labial/words.h)."""
 
     def __init__(self, own: Optional[OwnWords] = None, offset: int = 0) -> None:
         self._own, self._block = own, memory(library().words_size())

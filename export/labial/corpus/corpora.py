@@ -38,11 +38,9 @@ SPEECH_TAG = "speech"
 
 def read_avlaughter(path: PathLike, phone_set: PhoneSet = LAUGHTER,
                     refused: Optional[List[DataError]] = None) -> List[Episode]:
-    """Reads all laughs under `path` (sub-folders included) that have motion, sorted by name.
-
-    Malformed files raise DataError, and so does motion without annotation. Laughs without motion and those that contain
-    speech are omitted, with the reasons appended to `refused` if it is given.
-    """
+    """Reads all laughs under `path` (sub-folders included) that have motion, sorted by name. Malformed files raise
+    DataError, and so does motion without annotation. Laughs without motion and those that contain speech are omitted,
+    with the reasons appended to `refused` if it is given."""
     reasons: List[DataError] = [] if refused is None else refused
     annotations: Dict[str, Path] = {}
     for file in laugh_files(path):
@@ -82,11 +80,9 @@ def laugh_files(path: PathLike) -> List[Path]:
 
 
 def read_laugh(path: PathLike, phone_set: PhoneSet = LAUGHTER) -> Optional[Tuple[Segment, ...]]:
-    """The laughter phonemes of one annotation, or None when tier 2 marks speech in it.
-
-    Audible breath through the nose is "ne" in either direction. Where tier 1 is empty, tier 2 decides: with an airflow
-    in half of the interval or more it is breath, "ne", otherwise silence.
-    """
+    """The laughter phonemes of one annotation, or None when tier 2 marks speech in it. Audible breath through the nose
+    is "ne" in either direction. Where tier 1 is empty, tier 2 decides: with an airflow in half of the interval or more
+    it is breath, "ne", otherwise silence."""
     marks = read_segments(path, "textgrid", number=1)
     if not marks:
         raise DataError(path, None, "no interval tier with phonetic symbols")
@@ -117,11 +113,9 @@ class Resampled(NamedTuple):
 
 def read_corpus(path: PathLike, kind: str = "speech") -> List[Episode]:
     """Reads a corpus, whichever kind of files it has; episodes are sorted by name, labels are phonemes of `kind`.
-
     Recognised: IEMOCAP by its folders ``Session*/sentences``, AVLaughterCycle (laughter only) by its file names,
     anything else as a Labial corpus folder; ``corpus.toml`` names the talkers (:mod:`labial.corpus.talkers`). Raises
-    DataError for malformed files; a warning counts recordings that are well-formed but cannot be used.
-    """
+    DataError for malformed files; a warning counts recordings that are well-formed but cannot be used."""
     if kind not in PHONE_SETS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(PHONE_SETS)}")
     phone_set = PHONE_SETS[kind]
@@ -194,11 +188,8 @@ def read_corpora(paths: Sequence[PathLike], kind: str = "speech", *, even_sides:
 
 
 def resample(episode: Episode, fps: int) -> Resampled:
-    """`episode` at `fps` frames per second.
-
-    Motion is sampled by :func:`labial.files.frames.sampled`. Segments end at the frame nearest to their end, at .5 the
-    later one, so that rounding errors do not accumulate.
-    """
+    """`episode` at `fps` frames per second. Motion is sampled by :func:`labial.files.frames.sampled`. Segments end at
+    the frame nearest to their end, at .5 the later one, so that rounding errors do not accumulate."""
     if fps <= 0:
         raise LabialError(f"{fps} frames per second")
     if not episode.segments:

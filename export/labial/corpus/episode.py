@@ -47,11 +47,9 @@ class Source:
 
 @dataclass(frozen=True)
 class Episode:
-    """One utterance or bout of laughter.
-
-    `times` is (T,), seconds, strictly increasing; `frames` is (T, 13), float64, FAP units relative to the neutral
-    mouth; `segments` follow each other without gaps or overlaps (readers fill gaps with silence).
-    """
+    """One utterance or bout of laughter. `times` is (T,), seconds, strictly increasing; `frames` is (T, 13), float64,
+    FAP units relative to the neutral mouth; `segments` follow each other without gaps or overlaps (readers fill gaps
+    with silence)."""
 
     name: str
     times: np.ndarray
@@ -67,8 +65,7 @@ class Episode:
         voiced = np.array([segment.label != silence for segment in self.segments])
         at = np.searchsorted(ends, self.times, side="right")
         inside = (at < len(ends)) & (self.times >= self.segments[0].start)
-        result: np.ndarray = inside & voiced[np.minimum(at, len(ends) - 1)]
-        return result
+        return inside & voiced[np.minimum(at, len(ends) - 1)]
 
     def unseen(self, silence: str) -> List[Tuple[float, float]]:
         """The stretches, in seconds, whose motion is unknown: gaps over `UNSEEN`, and what lies outside the motion if
@@ -90,10 +87,8 @@ class Episode:
 
 def with_even_sides(corpus: Iterable[Episode]) -> List[Episode]:
     """The episodes with the channels of both sides at their mean. Where only one side is learnt from, both are it.
-
     Phonemes ask the same of both sides of a mouth. What a talker's sides do differently is his own, and twice as much
-    is learnt of their mean as of either.
-    """
+    is learnt of their mean as of either."""
     return [_even(item) for item in corpus]
 
 

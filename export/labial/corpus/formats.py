@@ -64,12 +64,9 @@ def read_service(path: PathLike, name: str, how: Pronunciation = PLAIN) -> List[
 
 def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Timed]:
     """The items of messages one after the other. Where messages have keys, they are in the order of these, and the
-    latest of each counts.
-
-    Times begin again with an utterance, and where a service may count from the message before: in one that begins
-    before that one began, or with other words within it, of which it lasts at least half. They then count from the end
-    of all that came before.
-    """
+    latest of each counts. Times begin again with an utterance, and where a service may count from the message before:
+    in one that begins before that one began, or with other words within it, of which it lasts at least half. They then
+    count from the end of all that came before."""
     if any(told.key is not None for _, told in messages):
         keyed = {number if told.key is None else told.key: told.items for number, (_, told) in enumerate(messages)}
         return [item for key in sorted(keyed) for item in keyed[key]]

@@ -112,10 +112,8 @@ def read_markers(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def bridge_gaps(times: np.ndarray, markers: np.ndarray) -> np.ndarray:
-    """`markers` (T, M, 3) with gaps of up to `LONGEST_GAP` interpolated linearly in time, and held at the ends.
-
-    Raises ValueError, which says which marker, for a longer gap or more than `MOST_MISSING` of the frames.
-    """
+    """`markers` (T, M, 3) with gaps of up to `LONGEST_GAP` interpolated linearly in time, and held at the ends. Raises
+    ValueError, which says which marker, for a longer gap or more than `MOST_MISSING` of the frames."""
     missing = ~np.isfinite(markers).all(axis=2)  # (T, M)
     share = missing.any(axis=1).mean()
     if share > MOST_MISSING:
@@ -135,10 +133,8 @@ def bridge_gaps(times: np.ndarray, markers: np.ndarray) -> np.ndarray:
 
 def markers_to_faps(markers: np.ndarray, neutral: np.ndarray) -> np.ndarray:
     """(T, 13) FAPs of aligned markers (T, M, 3) relative to the `neutral` face (M, 3), markers as :func:`read_markers`.
-
     MNS is the height of the nostrils over the line where the lips meet, between the two lips' centres; MW the lateral
-    distance of the corners. Raises ValueError when either is not positive, as with other axes.
-    """
+    distance of the corners. Raises ValueError when either is not positive, as with other axes."""
     mouth_line = (neutral[_INDEX["Mou3"], _Z] + neutral[_INDEX["Mou7"], _Z]) / 2
     nostrils = neutral[[_INDEX[name] for name in NOSTRILS], _Z]
     units = {"MNS": float(np.nanmean(nostrils) - mouth_line) if np.isfinite(nostrils).any() else np.nan,
@@ -153,10 +149,8 @@ def markers_to_faps(markers: np.ndarray, neutral: np.ndarray) -> np.ndarray:
 
 
 def neutral_face(utterances: List[_Utterance], silence: str) -> np.ndarray:
-    """(M, 3) median position of each marker in the inner part of the silences of aligned utterances.
-
-    With under half a second of silence: over the fifth of all frames in which the lips are closest to each other.
-    """
+    """(M, 3) median position of each marker in the inner part of the silences of aligned utterances. With under half a
+    second of silence: over the fifth of all frames in which the lips are closest to each other."""
     everything = np.concatenate([item.markers for item in utterances])
     still = []
     for item in utterances:
@@ -179,10 +173,8 @@ def neutral_face(utterances: List[_Utterance], silence: str) -> np.ndarray:
 def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
                  refused: Optional[List[DataError]] = None) -> List[Episode]:
     """Reads the corpus under `path`, episodes sorted by name (times from the utterance's start, 120 frames/s).
-
     Malformed files raise DataError. Utterances whose motion has too many gaps, or that have motion but no phoneme
-    timings, are omitted, with the reasons appended to `refused` if it is given.
-    """
+    timings, are omitted, with the reasons appended to `refused` if it is given."""
     reasons: List[DataError] = [] if refused is None else refused
     dialogs: Dict[str, List[Path]] = {}
     for file in sorted(Path(path).glob("Session*/sentences/MOCAP_rotated/*/*.txt")):
@@ -253,10 +245,8 @@ def _median(markers: np.ndarray) -> np.ndarray:
 
 def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, scale: bool = False) -> np.ndarray:
     """Rotates and shifts each frame of `markers` (T, M, D) so that its head fits `reference` (M, D) best; D is 2 or 3.
-
     Weighted least squares over the markers with `weights` (M,) above 0 (Kabsch), with `scale` also a scale for each
-    frame (Umeyama); frames with fewer than three such markers, or with all on a line, become NaN.
-    """
+    frame (Umeyama); frames with fewer than three such markers, or with all on a line, become NaN."""
     present = np.isfinite(markers).all(axis=2) & np.isfinite(reference).all(axis=1)  # (T, M)
     weight = present * weights
     usable = (present & (weights > 0)).sum(axis=1) >= 3
@@ -277,5 +267,4 @@ def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, 
     turned = np.einsum("tmi,tij->tmj", markers - centre[:, None], rotation)
     aligned = factor[:, None, None] * turned + target_centre[:, None]
     aligned[~usable] = np.nan
-    result: np.ndarray = aligned
-    return result
+    return aligned

@@ -116,12 +116,10 @@ def nearest(names: Mapping[str, str], longest: Mapping[str, int], label: str, si
 
 
 def entries(names: Mapping[str, Mapping[str, str]]) -> List[Tuple[str, str, Tuple[str, ...]]]:
-    """The names of each set of labels as one table: name, phoneme, and the sets in which that name means it.
-
-    The table leaves out names that mean the same when their marks are dropped. It is sorted by the names' bytes; a name
-    of several meanings occurs once for each, in the order of `names`' sets, so that the first one applies if no set is
-    named.
-    """
+    """The names of each set of labels as one table: name, phoneme, and the sets in which that name means it. The table
+    leaves out names that mean the same when their marks are dropped. It is sorted by the names' bytes; a name of
+    several meanings occurs once for each, in the order of `names`' sets, so that the first one applies if no set is
+    named."""
     table = []
     for name in sorted({name for known in names.values() for name in known}, key=str.encode):
         meanings = _meanings(names, name)
@@ -154,7 +152,7 @@ _ARPABET = {
     "B": "bcl BCL BD bd", "P": "pcl PCL PD pd", "M": "em EM", "D": "dcl DCL DD dd dx DX nx NX", "T": "tcl TCL TD td",
     "N": "en EN", "L": "el EL", "S": "TS ts", "Z": "dz DZ", "K": "kcl KCL KD kd", "G": "gcl GCL GD gd",
     "NG": "eng ENG", "HH": "hv HV h H q",
-}  # fmt: skip
+}
 
 _IPA = {
     "SIL": _SILENCE,
@@ -193,7 +191,7 @@ _XSAMPA = {
     "SH": r"s\ x\ S s`", "ZH": r"z\ Z z`", "CH": r"tS ts\ ts`", "JH": r"dZ dz\ dz`",
     "K": "k c q x kx", "G": r"g J\ G G\ R R\ R2 M\ g_<", "NG": r"N\ N", "HH": r"h\ H\ ?\ X\ <\ >\ h ? C X",
     "R": r"r r\ r\`", "Y": r"j\ j", "W": "w W H",
-}  # fmt: skip
+}
 #: Labels of speech: set of labels -> phoneme -> labels, blanks between.
 SPEECH_LABELS: Dict[str, Dict[str, str]] = {"arpabet": _ARPABET, "ipa": _IPA, "xsampa": _XSAMPA}
 #: Symbols of the AVLaughterCycle annotation: words, IPA, and IPA as Praat's backslash sequences. Vowels go to the

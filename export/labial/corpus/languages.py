@@ -55,18 +55,18 @@ _VOWELS = frozenset(VOWELS.split())
 
 _INITIALS = {"b": "B", "p": "P", "m": "M", "f": "F", "d": "D", "t": "T", "n": "N", "l": "L", "g": "G", "k": "K",
              "h": "HH", "j": "JH", "q": "CH", "x": "SH", "zh": "JH", "ch": "CH", "sh": "SH", "r": "R", "z": "D Z",
-             "c": "T S", "s": "S", "": ""}  # fmt: skip
+             "c": "T S", "s": "S", "": ""}
 #: Finals of pinyin as they are written behind an initial.
 _FINALS = {"a": "AA", "o": "AO", "e": "AH", "ai": "AY", "ei": "EY", "ao": "AW", "ou": "OW", "an": "AA N", "en": "AH N",
            "ang": "AA NG", "eng": "AH NG", "ong": "UH NG", "er": "ER", "i": "IY", "ia": "Y AA", "ie": "Y EH",
            "iao": "Y AW", "iu": "Y OW", "ian": "Y EH N", "in": "IH N", "iang": "Y AA NG", "ing": "IH NG",
            "iong": "Y UH NG", "u": "UW", "ua": "W AA", "uo": "W AO", "uai": "W AY", "ui": "W EY", "uan": "W AA N",
            "un": "W AH N", "uang": "W AA NG", "ueng": "W AH NG", "ü": "UW", "üe": "Y EH", "üan": "Y EH N",
-           "ün": "UW N"}  # fmt: skip
+           "ün": "UW N"}
 _SYLLABLE = re.compile(f"(zh|ch|sh|[bpmfdtnlgkhjqxrzcs]?)({'|'.join(sorted(_FINALS, key=len, reverse=True))})")
 #: How finals without an initial are written, and what they are.
 _WRITTEN = (("yi", "i"), ("yu", "ü"), ("yong", "iong"), ("you", "iu"), ("y", "i"), ("wu", "u"), ("wei", "ui"),
-            ("wen", "un"), ("weng", "ueng"), ("w", "u"))  # fmt: skip
+            ("wen", "un"), ("weng", "ueng"), ("w", "u"))
 
 
 def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]:

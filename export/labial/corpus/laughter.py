@@ -40,7 +40,7 @@ FPS = 50
 #: Median duration in milliseconds of phonemes with a random duration; fricatives and silences in a pulse fill its
 #: period.
 MEDIANS = {"a": 98, "e": 92, "o": 92, "ic": 80, "cackle": 48, "nasal": 80, "ne": 240, "fricative": 120, "click": 40,
-           "plosive": 40, "grunt": 200}  # fmt: skip
+           "plosive": 40, "grunt": 200}
 #: Standard deviation of a duration's logarithm.
 SPREAD = 0.22
 #: A pulse's period, milliseconds from onset to onset: mean, standard deviation, and limits.
@@ -92,10 +92,8 @@ _Phoneme = Tuple[str, int, float]  # label, milliseconds, loudness 0..1
 
 
 def generate(out_dir: PathLike, episodes: int = EPISODES, seed: int = 0) -> None:
-    """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes.
-
-    Raises DataError when `out_dir` exists and is not empty: another run's episodes would mix with these.
-    """
+    """Writes a Labial corpus folder of `episodes` bouts of laughter; the same seed gives the same bytes. Raises
+    DataError when `out_dir` exists and is not empty: another run's episodes would mix with these."""
     path = Path(out_dir)
     if path.is_dir() and any(path.iterdir()):
         raise DataError(path, None, "the folder is not empty")

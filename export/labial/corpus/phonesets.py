@@ -45,12 +45,10 @@ class PhoneSet:
     aliases: Dict[str, Dict[str, str]]  #: set of labels -> other label -> phoneme
 
     def names(self, labels: str = AUTO) -> Dict[str, str]:
-        """Every label that has a meaning, and that meaning, in one of `LABEL_SETS` or in any of them.
-
-        The phonemes' own labels are known in every set, unless the IPA or X-SAMPA means other sounds by them. A lone
-        digit is a phoneme only in X-SAMPA; if no set is named, it is more likely an error. The result is cached and
-        must not be changed.
-        """
+        """Every label that has a meaning, and that meaning, in one of `LABEL_SETS` or in any of them. The phonemes' own
+        labels are known in every set, unless the IPA or X-SAMPA means other sounds by them. A lone digit is a phoneme
+        only in X-SAMPA; if no set is named, it is more likely an error. The result is cached and must not be
+        changed."""
         if labels not in self._names:
             self._names[labels] = self._names_of(labels)
         return self._names[labels]
@@ -107,11 +105,9 @@ def aliases_for(kind: str, phonemes: Sequence[str], own: Dict[str, str]) -> Dict
 
 def substitute_for(label: str, available: Collection[str]) -> str:
     """The phoneme of `available` that looks most like `label` (of either kind): `label` itself if it is there.
-
     Candidates in order: those declared for the phoneme, its viseme class, the other vowels if it is one, else the other
     consonants, all others but silence, silence; P, B, M, F and V, which close the lips, stand in for the rest last.
-    Raises ValueError when no phoneme of the kind is available or `label` is none.
-    """
+    Raises ValueError when no phoneme of the kind is available or `label` is none."""
     for candidate in candidates_for(label):
         if candidate in available:
             return candidate
@@ -190,7 +186,7 @@ _ALIKE = {
     "ne": "nasal", "nasal": "ne silence", "click": "plosive", "plosive": "click fricative", "fricative": "e plosive",
     "ic": "e a", "e": "a ic", "a": "e cackle ic", "o": "e a", "cackle": "a e ic", "grunt": "nasal e",
     **{graded: f"{label} e" for label, grades in LAUGHTER_GRADES.items() for graded in grades},
-}  # fmt: skip
+}
 
 
 def _spellings(phoneme: str) -> str:
@@ -212,7 +208,7 @@ _LAUGHTER_CLASSES = {
 }
 
 _ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(label, '')}"
-                   for label in ("SIL", *ARPABET)}  # fmt: skip
+                   for label in ("SIL", *ARPABET)}
 #: English speech: 39 ARPABET phonemes and silence.
 SPEECH = _phone_set("speech", _SPEECH_CLASSES, f"{VOWELS} P B M", " ".join(("SIL", *ARPABET)),
                     {**SPEECH_LABELS, "arpabet": _ARPABET_LABELS})
@@ -223,6 +219,6 @@ LAUGHTER = _phone_set(
     " ".join(["silence ne click nasal plosive fricative ic e o grunt cackle a",
               *(item for grades in LAUGHTER_GRADES.values() for item in grades)]),
     dict.fromkeys(LABEL_SETS, LAUGHTER_LABELS),
-)  # fmt: skip
+)
 #: Phone set of each kind of model.
 PHONE_SETS = {"speech": SPEECH, "laughter": LAUGHTER}

@@ -9,7 +9,7 @@ from typing import Dict
 _CURRENCIES = "$€£¥₹₽"
 #: Signs as they are written in a common way: those as wide as ideographs, and those of two characters in one.
 _WRITTEN = str.maketrans({**{chr(code + 0xFEE0): chr(code) for code in range(0x21, 0x7F)},
-                          "￥": "¥", "￡": "£", "℃": "°C", "℉": "°F", "−": "-"})  # fmt: skip
+                          "￥": "¥", "￡": "£", "℃": "°C", "℉": "°F", "−": "-"})
 #: What is looked up: a number with the sign before it or its percent sign, since these may change places; degrees;
 #: any other sign alone. A hyphen is a minus before a number, at the beginning of a word.
 _BEFORE = rf"(?:(?<![^\s(])[-−][{_CURRENCIES}]?|[{_CURRENCIES}＄￥￡#№§])"
@@ -34,7 +34,7 @@ _SAID: Dict[str, Dict[str, str]] = {
               "- минус",
         "yue": _CHINESE,
     }.items()
-}  # fmt: skip
+}
 
 
 def worded(text: str, language: str) -> str:

@@ -42,10 +42,7 @@ _KEYS = ("weight", "leave_out", "scale", "silences", "talkers")
 
 def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]:
     """The episodes with their properties from ``corpus.toml``; without that file they are one talker's, in one
-    recording.
-
-    Raises DataError, which names the file and the line or the key.
-    """
+    recording. Raises DataError, which names the file and the line or the key."""
     where, path = Path(folder).resolve(), Path(folder) / FILE
     if not path.is_file():
         return [replace(item, source=Source(where.name, str(where))) for item in episodes]

@@ -77,9 +77,7 @@ def phone_set_of(segments: Sequence[SourceSegment], labels: str = AUTO) -> Phone
 
 def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> Optional[str]:
     """The phoneme of `phone_set` that a segment's label means in the set `labels`, or None; silence where it has none.
-
-    Where `labels` is "auto", labels of a format that has one set are of that first.
-    """
+    Where `labels` is "auto", labels of a format that has one set are of that first."""
     if not segment.label:
         return phone_set.silence
     known = phone_set.resolve(segment.label, segment.labels) if labels == AUTO else None
@@ -89,14 +87,11 @@ def meaning(segment: SourceSegment, phone_set: PhoneSet, labels: str = AUTO) -> 
 def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_set: PhoneSet, strict: bool = True,
                      labels: str = AUTO, laughs: bool = False) -> Tuple[Segment, ...]:
     """Maps labels of the set `labels` to `phone_set` and joins the segments without gaps from time 0; `path` is for the
-    error message.
-
-    An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later segment. A
-    silence of more than an hour becomes several; another phoneme of such a length is a DataError.
-    Unknown labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest
-    phoneme, with one warning each. Laughs stay as ``<laugh:0.7>`` if `laughs`; otherwise they are unknown labels, too,
-    and silence. Sounds that are too long or too short to be speech give a warning.
-    """
+    error message. An empty label and every gap over `TOLERANCE` are silence; smaller gaps and overlaps go to the later
+    segment. A silence of more than an hour becomes several; another phoneme of such a length is a DataError. Unknown
+    labels are a DataError, as a corpus of the wrong kind should be; unless `strict`, they are the nearest phoneme, with
+    one warning each. Laughs stay as ``<laugh:0.7>`` if `laughs`; otherwise they are unknown labels, too, and silence.
+    Sounds that are too long or too short to be speech give a warning."""
     result: List[Segment] = []
     warned: Set[str] = set()
     long_named = False

@@ -76,11 +76,9 @@ def phonemes_of(texts: Iterable[str], how: Pronunciation = PLAIN) -> List[Spoken
 
 
 def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 0) -> List[Tuple[str, int]]:
-    """The phonemes of words, in ARPABET with SIL for silence, and their milliseconds, from time 0 on.
-
-    `offset` milliseconds are added to all times. Raises LabialError as :func:`phonemes_of`, and StreamError where a
-    word ends before it begins, begins before an earlier one, or lasts more than an hour.
-    """
+    """The phonemes of words, in ARPABET with SIL for silence, and their milliseconds, from time 0 on. `offset`
+    milliseconds are added to all times. Raises LabialError as :func:`phonemes_of`, and StreamError where a word ends
+    before it begins, begins before an earlier one, or lasts more than an hour."""
     stream = WordStream(own_words([word.text for word in words], how), offset)
     found: List[Tuple[str, int]] = []
     for word in words:
@@ -97,10 +95,8 @@ def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: 
                         language: str = ENGLISH) -> List[Word]:
     """The words of characters with their times: what stands between blanks, or where :func:`_ends` or :func:`_begins`
     says so, without [tags] and <tags>. A bracket that is not closed begins none. Each character of Chinese is a word.
-
     An item of several characters shares its time evenly among them. A character that ends before the one before it, as
-    rounding and zero lengths make it, ends with that.
-    """
+    rounding and zero lengths make it, ends with that."""
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
     is_each = is_chinese(language)

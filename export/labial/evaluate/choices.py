@@ -129,8 +129,7 @@ def _every_transition(paths: Sequence[np.ndarray], size: int, stride: int = 1) -
     counts = np.full((size, size), 0.5)
     for path in paths:
         np.add.at(counts, (path[:-stride], path[stride:]), 1)
-    result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
-    return result
+    return np.log(counts / counts.sum(axis=1, keepdims=True))
 
 
 def _ending_units(phonemes: Sequence[str]) -> Dict[str, PhoneSet]:

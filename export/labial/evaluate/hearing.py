@@ -38,8 +38,7 @@ _FOLLOWS = 0.7
 @cache
 def _open_pose() -> np.ndarray:
     """(13,) FAP units: the middle of a long AA."""
-    result: np.ndarray = frames([(SPEECH.silence, 200), ("AA", 400)], 30)[20]
-    return result
+    return frames([(SPEECH.silence, 200), ("AA", 400)], 30)[20]
 
 
 @cache
@@ -54,8 +53,7 @@ def _pieces(sound: np.ndarray) -> np.ndarray:
 
 def levels(sound: np.ndarray) -> np.ndarray:
     """(T,) dB: the level of each frame of an int16 sound."""
-    result: np.ndarray = 10 * np.log10(np.square(_pieces(sound)).mean(axis=1) + 1.0)
-    return result
+    return 10 * np.log10(np.square(_pieces(sound)).mean(axis=1) + 1.0)
 
 
 def shares(level: np.ndarray) -> np.ndarray:
@@ -74,8 +72,7 @@ def shares(level: np.ndarray) -> np.ndarray:
 def crossings(sound: np.ndarray) -> np.ndarray:
     """(T,) how often a second each frame changes its sign."""
     signs: np.ndarray = np.signbit(_pieces(sound))
-    result: np.ndarray = (signs[:, 1:] != signs[:, :-1]).sum(axis=1) * (RATE / FRAME)
-    return result
+    return (signs[:, 1:] != signs[:, :-1]).sum(axis=1) * (RATE / FRAME)
 
 
 def loudness(sound: np.ndarray) -> np.ndarray:
@@ -97,8 +94,7 @@ def loudness_and_crossings(sound: np.ndarray) -> np.ndarray:
 
 def _pose(share: np.ndarray) -> np.ndarray:
     shut = _shut_pose()
-    result: np.ndarray = shut + share[:, None] * (_open_pose() - shut)
-    return result
+    return shut + share[:, None] * (_open_pose() - shut)
 
 
 #: Sentences that no bundled network was trained on, which voices say here.
@@ -170,8 +166,7 @@ def pink(count: int, random: np.random.Generator) -> np.ndarray:
     """(`count`,) noise whose energy falls by 3 dB an octave, above 20 Hz."""
     spectrum = np.fft.rfft(random.normal(size=count))
     frequency = np.arange(len(spectrum)) * RATE / max(count, 1)
-    result: np.ndarray = np.fft.irfft(spectrum / np.sqrt(np.maximum(frequency, 20.0)), count)
-    return result
+    return np.fft.irfft(spectrum / np.sqrt(np.maximum(frequency, 20.0)), count)
 
 
 def _white(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:

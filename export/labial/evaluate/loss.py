@@ -59,8 +59,7 @@ class Loss:
     @property
     def share(self) -> np.ndarray:
         """(13,) rms in percent of the range."""
-        result: np.ndarray = 100.0 * self.rms / self.extent
-        return result
+        return 100.0 * self.rms / self.extent
 
 
 def channel_extent(model: Model, motion: np.ndarray) -> np.ndarray:
@@ -69,8 +68,7 @@ def channel_extent(model: Model, motion: np.ndarray) -> np.ndarray:
     known = model.training.get("channel_range")
     if isinstance(known, list) and len(known) == CHANNELS:
         return np.asarray(known, dtype=np.float64)
-    result: np.ndarray = np.maximum(np.percentile(motion, 99, axis=0) - np.percentile(motion, 1, axis=0), 1.0)
-    return result
+    return np.maximum(np.percentile(motion, 99, axis=0) - np.percentile(motion, 1, axis=0), 1.0)
 
 
 def measure(model: Model, exported: ExportedModel, streams: Sequence[Stream]) -> Loss:

@@ -43,8 +43,7 @@ class Timeline:
     @cached_property
     def start(self) -> np.ndarray:
         """(S,) int64: first frame of each segment."""
-        result: np.ndarray = np.cumsum(self.length) - self.length
-        return result
+        return np.cumsum(self.length) - self.length
 
     @cached_property
     def segment_at(self) -> np.ndarray:
@@ -54,8 +53,7 @@ class Timeline:
     @cached_property
     def phoneme_at(self) -> np.ndarray:
         """(T,) int64: the phoneme of each frame."""
-        result: np.ndarray = self.phoneme[self.segment_at]
-        return result
+        return self.phoneme[self.segment_at]
 
 
 @dataclass(frozen=True)
@@ -70,8 +68,7 @@ class Utterance:
     def in_words(self, words: Iterable[str]) -> np.ndarray:
         """(T,) bool: frames of segments that belong to one of `words`."""
         wanted = set(words)
-        result: np.ndarray = np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
-        return result
+        return np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
 
     def longest_word(self, silence: int, words: Optional[Iterable[str]] = None) -> Optional[Tuple[int, int]]:
         """First and last segment of the word with the most phonemes, the first of equals, among `words` if given."""
@@ -119,10 +116,7 @@ def utterances(episodes: Iterable[Episode], phone_set: PhoneSet, fps: int) -> Li
 def bands(given: Timeline, phonemes: Sequence[str], kinds: Sequence[str], fps: int, begin: int = 0,
           end: Optional[int] = None) -> List[Band]:
     """The bands that figures draw: the phonemes within the frames from `begin` to before `end` (all), as they are
-    synthesised, cut at both ends.
-
-    `phonemes` and `kinds` (P,) are labels and kinds of bands by phoneme number.
-    """
+    synthesised, cut at both ends. `phonemes` and `kinds` (P,) are labels and kinds of bands by phoneme number."""
     end = given.frames if end is None else end
     found = []
     for segment in given.held:
@@ -199,11 +193,9 @@ def _draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
 
 
 def make_splits(corpus: Sequence[Utterance], count: int, seed: int, held_out: Sequence[str] = ()) -> List[Split]:
-    """`count` splits, each drawn by a generator of its own, so that split n is the same whatever `count` is.
-
-    With `held_out` words the test part is every episode that contains one of them, of which only those words' frames
-    are judged, and each split trains on a random 80 % of the other episodes.
-    """
+    """`count` splits, each drawn by a generator of its own, so that split n is the same whatever `count` is. With
+    `held_out` words the test part is every episode that contains one of them, of which only those words' frames are
+    judged, and each split trains on a random 80 % of the other episodes."""
     everyone = np.arange(len(corpus))
     if not held_out:
         if len(corpus) < 2:
@@ -220,9 +212,8 @@ def make_splits(corpus: Sequence[Utterance], count: int, seed: int, held_out: Se
     if contains.all():
         raise LabialError("every episode holds one of the words to hold out; nothing is left to train on")
     test = tuple(int(index) for index in everyone[contains])
-    return [
-        Split(n, tuple(int(index) for index in _draw(everyone[~contains], seed, n)), test, words) for n in range(count)
-    ]
+    return [Split(n, tuple(int(index) for index in _draw(everyone[~contains], seed, n)), test, words)
+            for n in range(count)]
 
 
 def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
@@ -232,9 +223,7 @@ def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
     if not talkers:
         raise LabialError("a talker is left out of a second corpus, but there is only one")
     further = range(first, len(corpus))
-    return [
-        Split(number, tuple(range(first)),
-              tuple(index for index in further if corpus[index].episode.source.talker == talker),
-              added=tuple(index for index in further if corpus[index].episode.source.talker != talker), talker=talker)
-        for number, talker in enumerate(talkers)
-    ]
+    return [Split(number, tuple(range(first)),
+                  tuple(index for index in further if corpus[index].episode.source.talker == talker),
+                  added=tuple(index for index in further if corpus[index].episode.source.talker != talker),
+                  talker=talker) for number, talker in enumerate(talkers)]

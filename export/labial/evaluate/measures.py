@@ -47,10 +47,8 @@ def _closing(phone_set: PhoneSet) -> np.ndarray:
 
 
 def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
-    """The grouping of errors: its name, the groups' names, and each phoneme's group (P,).
-
-    Viseme classes for speech; the phonemes themselves for laughter, which has few.
-    """
+    """The grouping of errors: its name, the groups' names, and each phoneme's group (P,). Viseme classes for speech;
+    the phonemes themselves for laughter, which has few."""
     if phone_set.kind == "laughter":
         return "phoneme", phone_set.phonemes, np.arange(len(phone_set.phonemes))
     return "class", phone_set.classes, np.array(phone_set.viseme_class)
@@ -87,8 +85,7 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
 
 def mean_difference(scale: Scale, human: np.ndarray, motion: np.ndarray) -> np.ndarray:
     """(4,) the paper's diff, |ori - syn| / maximum, of frames (T, 13)."""
-    result: np.ndarray = np.abs(labial_parameters(human) - labial_parameters(motion)).mean(axis=0) / scale.maximum
-    return result
+    return np.abs(labial_parameters(human) - labial_parameters(motion)).mean(axis=0) / scale.maximum
 
 
 class Judge:
@@ -139,10 +136,8 @@ class Judge:
         there = np.concatenate(away) if away else np.zeros((0, len(JUDGED)))
         if not len(here) or not len(there):
             return {"seam/mean": float("nan"), "seam/largest": float("nan")}
-        return {
-            "seam/mean": _mean_ratio(here.mean(axis=0), there.mean(axis=0)),
-            "seam/largest": _mean_ratio(here.max(axis=0), there.max(axis=0)),
-        }
+        return {"seam/mean": _mean_ratio(here.mean(axis=0), there.mean(axis=0)),
+                "seam/largest": _mean_ratio(here.max(axis=0), there.max(axis=0))}
 
     def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
         """(2,) share of the phonemes that close the lips where they do, and do so firmly."""
@@ -166,7 +161,7 @@ class Judge:
         return np.concatenate(
             [rises(item, frames, mask, self._phone_set, self._fps)
              for item, frames, mask in zip(self._test, motion, self._masks)]
-        )  # fmt: skip
+        )
 
     def _pulses(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
         """Share of visible pulses, its ratio to the human's, and the mean rise over the human's."""
@@ -237,15 +232,9 @@ def lips(frames: np.ndarray) -> np.ndarray:
 def labial_parameters(frames: np.ndarray) -> np.ndarray:
     """(T, 4) openness -(fap51 + fap52), extension fap53 + fap54, top protrusion fap17, bottom protrusion fap16."""
     channel = {name: frames[:, index] for index, name in enumerate(FAP_NAMES)}
-    return np.stack(
-        [
-            -(channel["lower_t_midlip_o"] + channel["raise_b_midlip_o"]),
-            channel["stretch_l_cornerlip_o"] + channel["stretch_r_cornerlip_o"],
-            channel["push_t_lip"],
-            channel["push_b_lip"],
-        ],
-        axis=1,
-    )
+    return np.stack([-(channel["lower_t_midlip_o"] + channel["raise_b_midlip_o"]),
+                     channel["stretch_l_cornerlip_o"] + channel["stretch_r_cornerlip_o"], channel["push_t_lip"],
+                     channel["push_b_lip"]], axis=1)
 
 
 def correlation(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
@@ -272,11 +261,9 @@ def differences(frames: np.ndarray, mask: np.ndarray, order: int) -> np.ndarray:
 
 
 def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
-    """(T - 2,) bool: second differences, of frames t, t + 1 and t + 2, that a unit's join touches.
-
-    A join is where a cross-fade begins (between begin - 1 and begin) and where it ends (between begin + fade - 1 and
-    begin + fade); it touches the two second differences that span it.
-    """
+    """(T - 2,) bool: second differences, of frames t, t + 1 and t + 2, that a unit's join touches. A join is where a
+    cross-fade begins (between begin - 1 and begin) and where it ends (between begin + fade - 1 and begin + fade); it
+    touches the two second differences that span it."""
     touched = np.zeros(max(frames - 2, 0), dtype=bool)
     for first, count in zip(begin, fade):
         for edge in (first, first + count):
@@ -302,11 +289,9 @@ def has_pulses(phone_set: PhoneSet) -> bool:
 
 
 def rises(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:
-    """(n,) FAP: the rise of openness in each vowel-like phoneme that has a judged frame.
-
-    That is the greatest openness within REACH of the phoneme over the least before it, back to the middle of the
-    vowel-like phoneme that came last or to the beginning. `frames` (T, 13) FAP, `mask` (T,) bool.
-    """
+    """(n,) FAP: the rise of openness in each vowel-like phoneme that has a judged frame. That is the greatest openness
+    within REACH of the phoneme over the least before it, back to the middle of the vowel-like phoneme that came last or
+    to the beginning. `frames` (T, 13) FAP, `mask` (T,) bool."""
     openness = labial_parameters(frames)[:, 0]
     reach, given = round(REACH * fps), item.timeline
     found = []

@@ -32,10 +32,10 @@ from labial.sound.samples import prepared
 #: Oculus LipSync's visemes, and a phoneme of each.
 VISEMES: Dict[str, str] = {
     "sil": "", "PP": "P", "FF": "F", "TH": "TH", "DD": "D", "kk": "K", "CH": "CH", "SS": "S", "nn": "N", "RR": "R",
-    "aa": "AA", "E": "EH", "I": "IH", "O": "OW", "U": "UW"}  # fmt: skip
+    "aa": "AA", "E": "EH", "I": "IH", "O": "OW", "U": "UW"}
 #: Methods, and the npm package that each needs.
 PACKAGES: Dict[str, str] = {"wawa-lipsync": "wawa-lipsync", "wawa-lipsync unsmoothed": "wawa-lipsync",
-                            "headaudio": "@met4citizen/headaudio", "pocketsphinx": ""}  # fmt: skip
+                            "headaudio": "@met4citizen/headaudio", "pocketsphinx": ""}
 #: Samples a second of the browser's sound, what it hears at once, and how often its page is drawn.
 BROWSER_RATE, BLOCK, PER_SECOND = 48000, 128, 60
 #: Samples that the AnalyserNode looks at, the share of what it reported before, dB of its levels 0 and 255.
@@ -62,7 +62,7 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
     if package == "wawa-lipsync":
         column = 0 if name == package else 1
         return lambda sound: shown(run(program, package, modules, levels(in_browser(sound)).tobytes())[:, column],
-                                   frames_of(len(sound)))  # fmt: skip
+                                   frames_of(len(sound)))
     return lambda sound: shown(run(program, name, modules, in_browser(sound).tobytes())[:, 0], frames_of(len(sound)))
 
 
@@ -71,8 +71,7 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
 
 def in_browser(sound: np.ndarray) -> np.ndarray:
     """(M,) float32 at `BROWSER_RATE`, full scale 1, of a sound at 16 kHz."""
-    found: np.ndarray = soxr.resample(np.asarray(sound, np.float32) / 32768, RATE, BROWSER_RATE).astype("<f4")
-    return found
+    return soxr.resample(np.asarray(sound, np.float32) / 32768, RATE, BROWSER_RATE).astype("<f4")
 
 
 def levels(samples: np.ndarray) -> np.ndarray:
@@ -129,8 +128,7 @@ def shown(weights: np.ndarray, count: int) -> np.ndarray:
         return np.zeros((count, CHANNELS))
     at = (np.arange(count) + 0.5) * FRAME_MS / 1000
     rows = np.arange(len(weights)) / PER_SECOND
-    result: np.ndarray = np.stack([np.interp(at, rows, column) for column in weights.T], axis=1) @ poses()
-    return result
+    return np.stack([np.interp(at, rows, column) for column in weights.T], axis=1) @ poses()
 
 
 # ---- The recogniser

@@ -59,11 +59,9 @@ class Token(NamedTuple):
 
 
 def spoken(item: Utterance, silence: int) -> List[Tuple[str, int, int]]:
-    """The words of an utterance in order: word, first frame and the frame after the last.
-
-    A word is a run of segments with its name; silence has none. A word may have no frame. "with" and "with(2)", which
-    aligners use for pronunciations, are one word.
-    """
+    """The words of an utterance in order: word, first frame and the frame after the last. A word is a run of segments
+    with its name; silence has none. A word may have no frame. "with" and "with(2)", which aligners use for
+    pronunciations, are one word."""
     given, found, last = item.timeline, [], None
     for index, word in enumerate(item.words):
         word = None if word is None or given.phoneme[index] == silence else _VARIANT.sub("", word)
@@ -95,8 +93,7 @@ def features(frames: np.ndarray, begin: int, end: int, fps: int) -> np.ndarray:
     margin = MARGIN * fps
     moments = np.linspace(begin - margin, end - 1 + margin, POINTS)
     seen = np.stack([np.interp(moments, np.arange(len(frames)), channel) for channel in frames.T], axis=1)
-    result: np.ndarray = (seen - seen.mean(axis=0)).ravel()
-    return result
+    return (seen - seen.mean(axis=0)).ravel()
 
 
 class Reader:
@@ -112,8 +109,7 @@ class Reader:
 
     def read(self, seen: np.ndarray) -> np.ndarray:
         """(n,) the words that (n, 13 POINTS) look like."""
-        result: np.ndarray = self._analysis.predict(seen)
-        return result
+        return self._analysis.predict(seen)
 
 
 @dataclass(frozen=True)
@@ -128,8 +124,7 @@ class _Test:
         """(n,) or (REPEATS n,) bool: which of the tokens, seen as (n, 13 POINTS), are read as what they are."""
         words = np.array([item.word for item in self.tokens])
         if not with_residual:
-            result: np.ndarray = self.reader.read(seen) == words
-            return result
+            return self.reader.read(seen) == words
         noisy = [self.reader.read(seen + self.reader.residual[rows]) == words for rows in self.borrowed]
         return np.concatenate(noisy)
 
@@ -153,8 +148,8 @@ class LipReader:
         self._classes = [found for found in tests if found]
 
     def _tokens(self, items: Sequence[Utterance], words: Sequence[str]) -> List[Token]:
-        return [Token(word, number, begin, end) for number, item in enumerate(items)
-                for word, begin, end in spoken(item, self._silence) if word in words and begin < end]  # fmt: skip
+        return [Token(word, number, begin, end) for number, item in enumerate(items) for word, begin,
+                end in spoken(item, self._silence) if word in words and begin < end]
 
     def _seen(self, motion: Sequence[np.ndarray], tokens: Sequence[Token]) -> np.ndarray:
         return np.stack([features(motion[item.utterance], item.begin, item.end, self._fps) for item in tokens])

@@ -204,8 +204,7 @@ def correlations(clips: Sequence[Tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     """(C,) correlation of the columns of pairs (T, C), each of which is centred; NaN where one does not move."""
     one, other = (np.concatenate([item - item.mean(axis=0) for item in side if len(item)]) for side in zip(*clips))
     scale = np.sqrt((one**2).sum(axis=0) * (other**2).sum(axis=0))
-    result: np.ndarray = np.where(scale > 1e-9, (one * other).sum(axis=0) / np.maximum(scale, 1e-9), np.nan)
-    return result
+    return np.where(scale > 1e-9, (one * other).sum(axis=0) / np.maximum(scale, 1e-9), np.nan)
 
 
 def evaluated(groups: Sequence[Group], judged: Dict[str, Method]) -> Iterator[Row]:

@@ -31,30 +31,17 @@ TABLE_1: Columns = [(name, f"diff/{name}") for name in (*PARAMETERS, "mean")]
 _FIRST: Columns = (("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"))
 _LAST: Columns = (("jitter", "jitter"), ("seam, mean", "seam/mean"), ("seam, largest", "seam/largest"))
 #: The other measures, by kind.
-TABLE_2: Dict[str, Columns] = {
-    "speech": [
-        *_FIRST,
-        ("closure", "closure/rate"),
-        ("of human", "closure/of human"),
-        ("firm closure", "firm closure/rate"),
-        ("of human", "firm closure/of human"),
-        ("readability", "readability"),
-        ("with residual", "readability/with residual"),
-        *_LAST,
-    ],
-    "laughter": [
-        *_FIRST,
-        ("pulses seen", "pulses/seen"),
-        ("of original", "pulses/of human"),
-        ("rise of pulses", "pulses/height"),
-        ("closure in ne, nasal", "closure/rate"),
-        ("of original", "closure/of human"),
-        *_LAST,
-    ],
-}
+TABLE_2: Dict[str, Columns] = {"speech": [*_FIRST, ("closure", "closure/rate"), ("of human", "closure/of human"),
+                                          ("firm closure", "firm closure/rate"), ("of human", "firm closure/of human"),
+                                          ("readability", "readability"),
+                                          ("with residual", "readability/with residual"), *_LAST],
+                               "laughter": [*_FIRST, ("pulses seen", "pulses/seen"), ("of original", "pulses/of human"),
+                                            ("rise of pulses", "pulses/height"),
+                                            ("closure in ne, nasal", "closure/rate"),
+                                            ("of original", "closure/of human"), *_LAST]}
 #: Correlation and amplitude, channel by channel.
-TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}") for what in ("correlation", "amplitude")
-                    for name in JUDGED_NAMES]  # fmt: skip
+TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}")
+                    for what in ("correlation", "amplitude") for name in JUDGED_NAMES]
 
 
 _NOTE_2 = {
@@ -199,17 +186,14 @@ def markdown(outcomes: Sequence[Outcome], options: Options, plots: Sequence[str]
         head = f"## {caption(f'Table {number}', what, options)}"
         return "\n\n".join(filter(None, [head, markdown_table(outcomes, who, columns, synthetic), note]))
 
-    parts = [
-        f"# Evaluation: {options.kind}" + (", synthetic data" if synthetic else ""),
-        *([_SYNTHETIC] if synthetic else []),
-        _heading(outcomes, options),
-        *([f"## {caption('Table 0', 'correlation, talker by talker', options)}", talkers_table(outcomes, methods),
-           _NOTE_TALKERS] if options.leave_out_talkers else []),
-        table(1, "diff, |original - synthetic| / maximum", methods, TABLE_1),
-        table(2, "other measures", [HUMAN, *methods], TABLE_2[options.kind], _NOTE_2[options.kind]),
-        table(3, "correlation and amplitude per channel", methods, TABLE_3),
-        table(4, f"mean diff per {apart}", methods, table_4(outcomes, options.kind)),
-    ]
+    parts = [f"# Evaluation: {options.kind}" + (", synthetic data" if synthetic else ""),
+             *([_SYNTHETIC] if synthetic else []), _heading(outcomes, options),
+             *([f"## {caption('Table 0', 'correlation, talker by talker', options)}", talkers_table(outcomes, methods),
+                _NOTE_TALKERS] if options.leave_out_talkers else []),
+             table(1, "diff, |original - synthetic| / maximum", methods, TABLE_1),
+             table(2, "other measures", [HUMAN, *methods], TABLE_2[options.kind], _NOTE_2[options.kind]),
+             table(3, "correlation and amplitude per channel", methods, TABLE_3),
+             table(4, f"mean diff per {apart}", methods, table_4(outcomes, options.kind))]
     parts += [f"![{Path(name).stem.replace('_', ' ')}]({name})" for name in plots]
     return "\n\n".join(parts) + "\n"
 
@@ -238,18 +222,14 @@ def _table_rows(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Co
 
 def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Sequence[str] = ()) -> List[Path]:
     """Writes report.md, table1.csv to table4.csv (means and deviations) and splits.csv (every measure, every split).
-
-    The CSV files of synthetic data say so in their names.
-    """
+    The CSV files of synthetic data say so in their names."""
     methods = methods_of(outcomes)
     written = [folder / "report.md"]
     written[0].write_text(markdown(outcomes, options, plots), encoding="utf-8")
-    tables: Dict[str, Tuple[Sequence[str], Columns]] = {
-        "table1": (methods, TABLE_1),
-        "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
-        "table3": (methods, TABLE_3),
-        "table4": (methods, table_4(outcomes, options.kind)),
-    }
+    tables: Dict[str, Tuple[Sequence[str], Columns]] = {"table1": (methods, TABLE_1),
+                                                        "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
+                                                        "table3": (methods, TABLE_3),
+                                                        "table4": (methods, table_4(outcomes, options.kind))}
     suffix = "_synthetic.csv" if options.synthetic else ".csv"
     for name, (who, columns) in tables.items():
         written.append(folder / f"{name}{suffix}")

@@ -37,12 +37,9 @@ class Predictor(Protocol):
 
 
 class Training:
-    """A training part: utterances, and models that are trained on them on first use.
-
-    `unseen_words` says that the fitted methods will be judged on words that the part does not contain, so that settings
-    must be chosen on such words, too. `added` episodes of further corpora are used only for Labial's models: other
-    methods have no weights.
-    """
+    """A training part: utterances, and models that are trained on them on first use. `unseen_words` says that the
+    fitted methods will be judged on words that the part does not contain, so that settings must be chosen on such
+    words, too. `added` episodes of further corpora are used only for Labial's models: other methods have no weights."""
 
     def __init__(self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int,
                  unseen_words: bool = False, added: Sequence[Episode] = (),
@@ -115,12 +112,11 @@ class Training:
         """The model of `method` ("paper" or "labial") trained on this part, as :func:`labial.train.train` does it."""
         key = method, normalise
         if key not in self._models:
-            self._models[key] = train(
-                [*(item.episode for item in self.utterances), *(self.added if method == "labial" else ())],
-                kind=self.phone_set.kind, method=method, fps=self.fps, seed=self.seed, jobs=1, progress=False,
-                divide=self.divide, normalise=normalise,
-                talker_variance=self.talker_variance if method == "labial" else None
-            )
+            self._models[key] = train([*(item.episode for item in self.utterances),
+                                       *(self.added if method == "labial" else ())], kind=self.phone_set.kind,
+                                      method=method, fps=self.fps, seed=self.seed, jobs=1, progress=False,
+                                      divide=self.divide, normalise=normalise,
+                                      talker_variance=self.talker_variance if method == "labial" else None)
         return self._models[key]
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:
@@ -146,9 +142,7 @@ def _spoken_words(item: Utterance, silence: int) -> Set[str]:
 
 def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.ndarray]) -> float:
     """Mean diff over the four labial parameters, the figure that methods are judged by, on a fold's held-out frames.
-
-    `predict` takes a timeline and returns (T, 13) FAP.
-    """
+    `predict` takes a timeline and returns (T, 13) FAP."""
     masks = judged_frames(fold.held_out, fold.training.phone_set, fold.words)
     human = np.concatenate([item.human[mask] for item, mask in zip(fold.held_out, masks)])
     motion = np.concatenate([predict(item.timeline)[mask] for item, mask in zip(fold.held_out, masks)])
@@ -157,10 +151,8 @@ def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.
 
 def choose(training: Training, settings: Sequence[Setting],
            prepare: Callable[[Training], Callable[[Setting], Callable[[Timeline], np.ndarray]]]) -> Setting:
-    """The setting of least error over the folds of inner validation, the first of equals.
-
-    `prepare` takes the part to fit on and returns what makes a prediction function of a setting.
-    """
+    """The setting of least error over the folds of inner validation, the first of equals. `prepare` takes the part to
+    fit on and returns what makes a prediction function of a setting."""
     error = np.zeros(len(settings))
     for fold in training.folds:
         predict_with = prepare(fold.training)

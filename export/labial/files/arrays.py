@@ -48,11 +48,9 @@ def write_model(path: Union[PathLike, BinaryIO], about: Mapping[str, Any],
 
 
 def read_zip(path: PathLike, names: Optional[Iterable[str]], most: int) -> Dict[str, bytes]:
-    """Members of a zip file by name: those of `names` that exist, or all of them.
-
-    Raises OSError for a file that cannot be opened; ArrayError for a file that is not a zip, is encrypted or damaged,
-    or whose members, unpacked, exceed `most` bytes together, or too many times the size of the file (`limits`).
-    """
+    """Members of a zip file by name: those of `names` that exist, or all of them. Raises OSError for a file that cannot
+    be opened; ArrayError for a file that is not a zip, is encrypted or damaged, or whose members, unpacked, exceed
+    `most` bytes together, or too many times the size of the file (`limits`)."""
     with open(path, "rb") as file:
         return _members(file, None if names is None else set(names), most)
 

@@ -46,23 +46,18 @@ def whole_shares(shares: np.ndarray) -> bytes:
 
 def opening(frames: np.ndarray) -> np.ndarray:
     """(..., T) the distance of the outer lips' middles in frames (..., T, 13 or more), FAP units."""
-    result: np.ndarray = -(frames[..., _UPPER] + frames[..., _LOWER])
-    return result
+    return -(frames[..., _UPPER] + frames[..., _LOWER])
 
 
 def sampled(times: np.ndarray, frames: np.ndarray, fps: float, count: int, origin: float = 0.0) -> np.ndarray:
     """(count, K) frames at `fps` per second, the first of which begins at `origin`, seconds, of frames (T, K) whose
-    `times` are (T,).
-
-    Motion is interpolated linearly at the centre of each frame, and held before and after the times. Motion of a higher
-    rate is averaged over each frame's duration instead, which avoids aliasing.
-    """
+    `times` are (T,). Motion is interpolated linearly at the centre of each frame, and held before and after the times.
+    Motion of a higher rate is averaged over each frame's duration instead, which avoids aliasing."""
     steps = np.diff(times)
     points = _OVERSAMPLING if len(steps) > 0 and np.median(steps) < 0.99 / fps else 1
     moments = origin + (np.arange(count * points) + 0.5) / (fps * points)
     samples = [np.interp(moments, times, channel) for channel in frames.T]
-    result: np.ndarray = np.stack(samples, axis=1).reshape(count, points, -1).mean(axis=1)
-    return result
+    return np.stack(samples, axis=1).reshape(count, points, -1).mean(axis=1)
 
 
 def at_rate(frames: np.ndarray, fps: float, wanted: float) -> np.ndarray:

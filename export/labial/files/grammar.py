@@ -103,10 +103,8 @@ def columns_of(line: str) -> List[str]:
 
 
 def table_rows(path: PathLike, lines: Sequence[str], columns: int) -> Iterator[Tuple[int, List[str]]]:
-    """Line number and comma-separated fields of every line after the header; `path` is for the error message.
-
-    Empty lines may only end the file. Raises DataError for others, and for a line of more or fewer `columns`.
-    """
+    """Line number and comma-separated fields of every line after the header; `path` is for the error message. Empty
+    lines may only end the file. Raises DataError for others, and for a line of more or fewer `columns`."""
     for line, text in enumerate(lines[1:], 2):
         if is_blank(text):
             if not all(map(is_blank, lines[line:])):

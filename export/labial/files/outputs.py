@@ -45,12 +45,10 @@ def check_suffix(path: PathLike, *known: str) -> str:
 
 @contextmanager
 def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]:
-    """A file object for the content of `path`: text in `encoding` with LF line ends, or bytes without an encoding.
-
-    The file replaces what is at `path` when the block ends, and never if the block raises. It keeps the permissions of
-    the replaced file; links are followed. Devices, pipes and files of ``/dev/fd`` are written directly. Raises
-    LabialError, which names `path`, if the file cannot be written.
-    """
+    """A file object for the content of `path`: text in `encoding` with LF line ends, or bytes without an encoding. The
+    file replaces what is at `path` when the block ends, and never if the block raises. It keeps the permissions of the
+    replaced file; links are followed. Devices, pipes and files of ``/dev/fd`` are written directly. Raises LabialError,
+    which names `path`, if the file cannot be written."""
     with _named(path):
         target = _resolved(path)
     temporary = _part(target) if target is not None else ""  # named before it is created: a signal may come at any time
@@ -78,13 +76,10 @@ def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]
 @contextmanager
 def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
     """A temporary folder for the files of the folder `path`, which is created if missing. Errors of the folder itself
-    name `name`, if it is given.
-
-    A new folder appears with all of its files at once. A folder that exists stays, since it may be the current one, and
-    its owner and permissions are the user's: the files are renamed into it one after the other when the block ends,
-    each as :func:`writing` does; if that fails, the LabialError says which are new. No file is changed if the block
-    raises.
-    """
+    name `name`, if it is given. A new folder appears with all of its files at once. A folder that exists stays, since
+    it may be the current one, and its owner and permissions are the user's: the files are renamed into it one after the
+    other when the block ends, each as :func:`writing` does; if that fails, the LabialError says which are new. No file
+    is changed if the block raises."""
     target, shown = Path(path), path if name is None else name
     lock: Optional[int] = None
     with _named(shown):

@@ -26,8 +26,7 @@ _TEXTS = re.compile(r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'|#[^\n]*')
 class Table:
     """A table of a file: `content` by key. Only `known` keys are allowed; errors write `prefix` before a key."""
 
-    def __init__(self, path: PathLike, prefix: str, content: Mapping[str, Any],
-                 known: Iterable[str]) -> None:
+    def __init__(self, path: PathLike, prefix: str, content: Mapping[str, Any], known: Iterable[str]) -> None:
         self.path, self.prefix, self.content = path, prefix, content
         known = list(known)
         for key in content:

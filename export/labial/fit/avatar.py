@@ -35,11 +35,9 @@ class Mesh:
 
 def read(path: PathLike, everything: bool = False) -> List[Mesh]:
     """The meshes of a file that have shapes, each once, at the first node that has it. A .vrm file's expressions aa,
-    ih, ou, ee, oh are shapes of the mesh that they move, beside the mesh's own.
-
-    Raises DataError for other files, compressed files, files without shapes, and files beyond the limits of
-    :mod:`labial.files.limits`; with `everything` these hold for all that a program decodes which shows the file.
-    """
+    ih, ou, ee, oh are shapes of the mesh that they move, beside the mesh's own. Raises DataError for other files,
+    compressed files, files without shapes, and files beyond the limits of :mod:`labial.files.limits`; with `everything`
+    these hold for all that a program decodes which shows the file."""
     where = os.fspath(path)
     try:
         file = Gltf(path, everything)

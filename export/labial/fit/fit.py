@@ -44,11 +44,9 @@ class Fitted(NamedTuple):
 
 
 def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], name: str) -> Fitted:
-    """The rig of one avatar, or of several alike.
-
-    `points` are vertices by point, which need not be found; `shapes` a kind or names separated by commas; `name` the
-    rig's name. Raises DataError for a file that cannot be used and LabialError for what cannot be solved.
-    """
+    """The rig of one avatar, or of several alike. `points` are vertices by point, which need not be found; `shapes` a
+    kind or names separated by commas; `name` the rig's name. Raises DataError for a file that cannot be used and
+    LabialError for what cannot be solved."""
     heads: List[Head] = []
     founds: List[Optional[Found]] = []
     report: List[str] = []

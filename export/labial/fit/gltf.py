@@ -257,11 +257,10 @@ def _local(node: Dict[str, Any]) -> np.ndarray:
         return np.array(_numbers(node["matrix"], 16)).reshape(4, 4).T
     out = np.eye(4)
     x, y, z, w = _numbers(node.get("rotation") or (0.0, 0.0, 0.0, 1.0), 4)
-    out[:3, :3] = np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]) * np.array(_numbers(node.get("scale") or (1.0, 1.0, 1.0), 3))
+    out[:3, :3] = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                            [2 * (x * z - y * w), 2 * (y * z + x * w),
+                             1 - 2 * (x * x + y * y)]]) * np.array(_numbers(node.get("scale") or (1.0, 1.0, 1.0), 3))
     out[:3, 3] = _numbers(node.get("translation") or (0.0, 0.0, 0.0), 3)
     return out
 

@@ -26,7 +26,7 @@ POINTS: Tuple[str, ...] = (
     "inner_upper", "inner_lower", "outer_upper", "outer_lower",
     "inner_upper_left", "inner_upper_right", "inner_lower_left", "inner_lower_right",
     "outer_upper_left", "outer_upper_right", "outer_lower_left", "outer_lower_right",
-)  # fmt: skip
+)
 #: Required points.
 NEEDED: Tuple[str, ...] = ("nose", "corner_left", "corner_right", "inner_upper", "inner_lower")
 #: Columns of a table of lip points in Multi-PIE's numbering, whose 48 is the corner on the viewer's left: the face's
@@ -37,7 +37,7 @@ _MULTI_PIE: Mapping[str, str] = {
     "inner_upper_right": "lip_61", "inner_upper_left": "lip_63", "inner_lower_left": "lip_65",
     "inner_lower_right": "lip_67", "outer_upper_right": "lip_50", "outer_upper_left": "lip_52",
     "outer_lower_left": "lip_56", "outer_lower_right": "lip_58",
-}  # fmt: skip
+}
 #: Millimetres between the nose's base and the inner upper lip of a grown-up, by which heads of unknown units are
 #: scaled: that of ICT-FaceKit's mean head.
 USUAL_MNS = 21.2
@@ -212,5 +212,4 @@ def _other(point: str) -> str:
 def _directions(moves: np.ndarray) -> np.ndarray:
     """(K, 3 P) unit vectors of (K, P, 3) moves; 0 for what does not move."""
     flat = moves.reshape(len(moves), -1)
-    result: np.ndarray = flat / np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-9)
-    return result
+    return flat / np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-9)

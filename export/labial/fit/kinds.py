@@ -56,7 +56,7 @@ _ARKIT = Kind(
     dict.fromkeys(("mouthPress", "mouthRollUpper", "mouthShrugUpper", "mouthShrugLower", "mouthSmile", "mouthFrown"),
                   4.0),
     {"mouthRollLower": _TO_THE_TEETH},
-)  # fmt: skip
+)
 _OCULUS = Kind(
     {
         "PP": ("upper_lip", "lower_lip"), "FF": (), "TH": (), "DD": (), "kk": (), "nn": (),
@@ -66,7 +66,7 @@ _OCULUS = Kind(
     },
     {"FF": 0.25, **dict.fromkeys(("TH", "DD", "kk", "nn"), 0.05)}, {},
     {"FF": _TO_THE_TEETH, **dict.fromkeys(("TH", "DD", "kk", "nn"), _TONGUE)},
-)  # fmt: skip
+)
 _VRM = Kind(dict.fromkeys(("aa", "ih", "ou", "ee", "oh"), FEATURES), {}, {}, {})
 KINDS: Dict[str, Kind] = {"arkit": _ARKIT, "oculus": _OCULUS, "vrm": _VRM}
 #: Other names of the same shapes, as `plain` returns them.

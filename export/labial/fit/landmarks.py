@@ -112,8 +112,7 @@ class _Face:
         self.starts = np.searchsorted(both[order, 0], np.arange(len(self.points) + 1))
 
     def beside(self, vertex: int) -> np.ndarray:
-        result: np.ndarray = self.neighbours[self.starts[vertex] : self.starts[vertex + 1]]
-        return result
+        return self.neighbours[self.starts[vertex] : self.starts[vertex + 1]]
 
     def strip(self, width: float) -> np.ndarray:
         """Which vertices lie on the midline, within a share of the face's size."""

@@ -111,9 +111,8 @@ def shown(head: Head, weights: np.ndarray) -> Dict[str, np.ndarray]:
 
 def opening(head: Head, weights: np.ndarray) -> np.ndarray:
     """(T,) mm between the inner lips; below 0 they pass through each other."""
-    result: np.ndarray = (head.rest["inner_upper"] - head.rest["inner_lower"])[1] + weights @ (
+    return (head.rest["inner_upper"] - head.rest["inner_lower"])[1] + weights @ (
         head.moves["inner_upper"] - head.moves["inner_lower"])[:, 1]
-    return result
 
 
 def crooked(head: Head, weights: np.ndarray, frames: np.ndarray) -> Tuple[float, float]:

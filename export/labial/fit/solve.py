@@ -208,8 +208,7 @@ class Problem:
                                   for feature in FEATURES] for group in self.groups])
         self.slopes = np.array([[fixed.get(group.name, {}).get(feature, 0.0) for feature in FEATURES]
                                 for group in self.groups])
-        self.offsets = np.array([fixed.get(group.name, {"offset": -0.02}).get("offset", 0.0)
-                                 for group in self.groups])
+        self.offsets = np.array([fixed.get(group.name, {"offset": -0.02}).get("offset", 0.0) for group in self.groups])
         given = self.weights(self.slopes, self.offsets)[0]
         loose = self.free_groups[self.owner]
         self.low, self.high = np.where(loose, 0.0, given), np.where(loose, self.cap, given)

@@ -50,11 +50,9 @@ class Clip:
 
 
 def find(folder: PathLike) -> List[Tuple[str, Told]]:
-    """The sounds of a folder in the order of their paths, each with what tells its phonemes.
-
-    Raises DataError for a folder without sounds, for a sound without either and for a table with a wrong line, which it
-    names. Lines of a table without a sound are passed over: parts of LJ Speech come with its whole table.
-    """
+    """The sounds of a folder in the order of their paths, each with what tells its phonemes. Raises DataError for a
+    folder without sounds, for a sound without either and for a table with a wrong line, which it names. Lines of a
+    table without a sound are passed over: parts of LJ Speech come with its whole table."""
     sounds = _sounds(folder)
     tables: Dict[Path, Dict[str, Told]] = {}
     found = []
@@ -118,12 +116,10 @@ def _table(path: Path) -> Dict[str, Told]:
 
 def read(folder: PathLike, cache: PathLike, jobs: int = 1,
          told: Optional[Callable[[int, int], None]] = None) -> List[Clip]:
-    """The clips of a folder; texts are aligned in `jobs` processes, results are kept in the folder `cache`.
-
-    Sounds that their text does not fit, and texts that are not English words, are left out with a warning. `told`
-    receives how many sounds are done, and how many there are. Raises DataError as :func:`find`, for timings that cannot
-    be read, and if no clip remains.
-    """
+    """The clips of a folder; texts are aligned in `jobs` processes, results are kept in the folder `cache`. Sounds that
+    their text does not fit, and texts that are not English words, are left out with a warning. `told` receives how many
+    sounds are done, and how many there are. Raises DataError as :func:`find`, for timings that cannot be read, and if
+    no clip remains."""
     found = find(folder)
     work = [(sound, item, _kept(cache, sound, item)) for sound, item in found]
     missing = [row for row in work if row[1].text is not None and not os.path.exists(row[2])]

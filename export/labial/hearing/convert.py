@@ -29,7 +29,7 @@ class Rate(NamedTuple):
 RATES: Dict[int, Rate] = {
     8000: Rate(480, 240), 12000: Rate(480, 360), 16000: Rate(480, 480), 22050: Rate(320, 441), 24000: Rate(320, 480),
     32000: Rate(240, 480), 44100: Rate(160, 441), 48000: Rate(160, 480),
-}  # fmt: skip
+}
 #: Grid points of either half of the filter, and those after it that a sample may fall on, which are zero.
 POINTS, BEYOND = 256, 33
 #: The filter's cut-off at 48 kHz, Hz (at half the amplitude), and the shape of its window (Kaiser's).

@@ -24,7 +24,7 @@ CODECS: Dict[str, Tuple[str, str, int, float]] = {
     "gsm": ("WAV", "GSM610", 8000, 0.0), "adpcm": ("WAV", "IMA_ADPCM", 16000, 0.0),
     "g726": ("AU", "G723_24", 8000, 0.0), "opus": ("OGG", "OPUS", 16000, 1.0),
     "vorbis": ("OGG", "VORBIS", 16000, 1.0), "mp3": ("MP3", "MPEG_LAYER_III", 16000, 0.95),
-}  # fmt: skip
+}
 #: Share of the crops whose bands are warped, from and to which factor: voices of other sizes.
 WARPED, WARPS = 0.6, (0.87, 1.15)
 #: Share of the crops under noise, and its ratio to the speech, dB.
@@ -62,19 +62,17 @@ def drawn(random: np.random.Generator) -> Distortion:
     if random.random() < 0.5:
         return Distortion(speed=speed, peak=peak)
     kind = random.random(9)
-    return Distortion(
-        speed=speed, peak=peak,
-        decay=float(random.uniform(0.1, 0.6)) if kind[0] < 0.45 else 0.0,
-        dry=float(random.uniform(0.7, 2.5)),
-        band=(float(random.uniform(50, 350)), float(random.uniform(3300, 7000))) if kind[1] < 0.4 else None,
-        rumble=float(np.exp(random.uniform(*np.log((0.02, 1.5))))) if kind[2] < 0.25 else 0.0,
-        clip=float(random.uniform(0.005, 0.08)) if kind[3] < 0.2 else 0.0,
-        companded=bool(kind[4] < 0.25),
-        offset=float(random.uniform(-0.3, 0.3)) if kind[5] < 0.2 else 0.0,
-        echo=(float(random.uniform(0.0004, 0.008)), float(random.uniform(0.2, 0.8))) if kind[6] < 0.3 else (0.0, 0.0),
-        evening=float(random.uniform(0.2, 0.7)) if kind[7] < 0.25 else 0.0,
-        codec=str(random.choice(list(CODECS))) if kind[8] < 0.35 else "",
-    )  # fmt: skip
+    return Distortion(speed=speed, peak=peak, decay=float(random.uniform(0.1, 0.6)) if kind[0] < 0.45 else 0.0,
+                      dry=float(random.uniform(0.7, 2.5)),
+                      band=(float(random.uniform(50, 350)),
+                            float(random.uniform(3300, 7000))) if kind[1] < 0.4 else None,
+                      rumble=float(np.exp(random.uniform(*np.log((0.02, 1.5))))) if kind[2] < 0.25 else 0.0,
+                      clip=float(random.uniform(0.005, 0.08)) if kind[3] < 0.2 else 0.0, companded=bool(kind[4] < 0.25),
+                      offset=float(random.uniform(-0.3, 0.3)) if kind[5] < 0.2 else 0.0,
+                      echo=(float(random.uniform(0.0004, 0.008)),
+                            float(random.uniform(0.2, 0.8))) if kind[6] < 0.3 else (0.0, 0.0),
+                      evening=float(random.uniform(0.2, 0.7)) if kind[7] < 0.25 else 0.0,
+                      codec=str(random.choice(list(CODECS))) if kind[8] < 0.35 else "")
 
 
 def distorted(samples: np.ndarray, distortion: Distortion, random: np.random.Generator) -> np.ndarray:
@@ -111,8 +109,7 @@ def as_integers(sound: np.ndarray, peak: float, offset: float = 0.0) -> np.ndarr
     most = float(np.abs(sound).max(initial=0.0))
     gain = 32767.0 * 10 ** (peak / 20) / most if most > 0 else 0.0
     scaled = sound * gain + 32767.0 * 10 ** (peak / 20) * offset
-    result: np.ndarray = np.clip(np.round(scaled), -32768, 32767).astype(np.int16)
-    return result
+    return np.clip(np.round(scaled), -32768, 32767).astype(np.int16)
 
 
 def resampled(sound: np.ndarray, speed: float) -> np.ndarray:
@@ -121,8 +118,7 @@ def resampled(sound: np.ndarray, speed: float) -> np.ndarray:
 
     count = max(round(len(sound) / speed), 1)
     found = soxr.resample(sound, RATE * speed, RATE)[:count]
-    result: np.ndarray = np.pad(found, (0, count - len(found))).astype(np.float32)
-    return result
+    return np.pad(found, (0, count - len(found))).astype(np.float32)
 
 
 def reverberated(sound: np.ndarray, decay: float, dry: float, random: np.random.Generator) -> np.ndarray:
@@ -135,8 +131,7 @@ def reverberated(sound: np.ndarray, decay: float, dry: float, random: np.random.
     tail[0] = 1.0
     size = 1 << (len(sound) + count - 1).bit_length()
     mixed = np.fft.irfft(np.fft.rfft(sound, size) * np.fft.rfft(tail, size), size)
-    result: np.ndarray = mixed[: len(sound)].astype(np.float32)
-    return result
+    return mixed[: len(sound)].astype(np.float32)
 
 
 def limited(sound: np.ndarray, low: float, high: float) -> np.ndarray:
@@ -144,8 +139,7 @@ def limited(sound: np.ndarray, low: float, high: float) -> np.ndarray:
     spectrum = np.fft.rfft(sound)
     frequency = np.maximum(np.arange(len(spectrum)) * RATE / max(len(sound), 1), 1e-3)
     gain = 1 / np.sqrt((1 + (low / frequency) ** 8) * (1 + (frequency / high) ** 8))
-    result: np.ndarray = np.fft.irfft(spectrum * gain, len(sound)).astype(np.float32)
-    return result
+    return np.fft.irfft(spectrum * gain, len(sound)).astype(np.float32)
 
 
 def rumbling(count: int, random: np.random.Generator) -> np.ndarray:
@@ -155,15 +149,13 @@ def rumbling(count: int, random: np.random.Generator) -> np.ndarray:
     hum = sum(random.uniform(0, 1) / k * np.sin(2 * np.pi * (k * mains * time + random.random())) for k in range(1, 7))
     noise = limited(random.normal(size=count).astype(np.float32), 20.0, 200.0)
     mixed = hum * random.random() + noise * (random.random() + 0.1) / max(rms(noise), 1e-9)
-    result: np.ndarray = (mixed / max(rms(mixed), 1e-9)).astype(np.float32)
-    return result
+    return (mixed / max(rms(mixed), 1e-9)).astype(np.float32)
 
 
 def clipped(sound: np.ndarray, share: float) -> np.ndarray:
     """A sound of which the loudest `share` of the samples are cut off."""
     limit = float(np.quantile(np.abs(sound), 1 - share)) if len(sound) else 0.0
-    result: np.ndarray = np.clip(sound, -limit, limit)
-    return result
+    return np.clip(sound, -limit, limit)
 
 
 def echoed(sound: np.ndarray, delay: float, amplitude: float) -> np.ndarray:
@@ -182,8 +174,7 @@ def evened(sound: np.ndarray, strength: float) -> np.ndarray:
     level = np.maximum(np.sqrt(power), 1e-3 * np.sqrt(power.max(initial=0.0)) + 1e-9)
     gain = (level.max() / level) ** strength
     at = np.interp(np.arange(len(sound)), (np.arange(steps) + 0.5) * len(sound) / steps, gain)
-    result: np.ndarray = (sound * at).astype(np.float32)
-    return result
+    return (sound * at).astype(np.float32)
 
 
 def coded(sound: np.ndarray, form: str, subtype: str, rate: int, compression: float) -> np.ndarray:
@@ -202,43 +193,37 @@ def coded(sound: np.ndarray, form: str, subtype: str, rate: int, compression: fl
         product = np.fft.irfft(np.fft.rfft(found, size) * np.conj(np.fft.rfft(given, size)), size)
         found = found[int(np.argmax(product[: max(len(found) - len(given) + 1, 1)])) :]
     found = found if rate == RATE else soxr.resample(found, rate, RATE)
-    result: np.ndarray = np.pad(found[: len(sound)], (0, max(len(sound) - len(found), 0))).astype(np.float32)
-    return result
+    return np.pad(found[: len(sound)], (0, max(len(sound) - len(found), 0))).astype(np.float32)
 
 
 def companded(sound: np.ndarray) -> np.ndarray:
     """A sound within -1 .. 1 in 8 bits by mu-law (ITU-T G.711), and back."""
     code = np.round(np.sign(sound) * np.log1p(255.0 * np.minimum(np.abs(sound), 1.0)) / np.log(256.0) * 127.0)
-    result: np.ndarray = (np.sign(code) * np.expm1(np.abs(code) / 127.0 * np.log(256.0)) / 255.0).astype(np.float32)
-    return result
+    return (np.sign(code) * np.expm1(np.abs(code) / 127.0 * np.log(256.0)) / 255.0).astype(np.float32)
 
 
 def white(seconds: float, random: np.random.Generator) -> np.ndarray:
     """(n, 24) float32 log2 energies of white noise, relative to the mean energy of all bands together."""
     noise = log_energies(random.normal(scale=1000.0, size=round(seconds * RATE)))[2:]
-    result: np.ndarray = noise - np.log2(np.exp2(noise).mean())
-    return result
+    return noise - np.log2(np.exp2(noise).mean())
 
 
 def power(energies: np.ndarray) -> np.ndarray:
     """(B, 1, 1) log2 of the mean energy of each crop."""
-    result: np.ndarray = np.log2(np.exp2(energies).mean(axis=(1, 2), keepdims=True))
-    return result
+    return np.log2(np.exp2(energies).mean(axis=(1, 2), keepdims=True))
 
 
 def mixed(energies: np.ndarray, noise: np.ndarray, ratio: np.ndarray) -> np.ndarray:
     """Crops with `noise`, (B, n, 24) of any level, added at `ratio` (B,) dB below the crops' mean energy."""
     level = power(energies) - power(noise) - np.asarray(ratio)[:, None, None] * (np.log2(10.0) / 10.0)
-    result: np.ndarray = np.log2(np.exp2(energies) + np.exp2(noise + level.astype(np.float32)))
-    return result
+    return np.log2(np.exp2(energies) + np.exp2(noise + level.astype(np.float32)))
 
 
 def warped(energies: np.ndarray, factor: np.ndarray) -> np.ndarray:
     """Crops whose band k has the energy of band k * factor, `factor` (B,), between bands linearly."""
     at = np.clip(np.arange(BANDS) * factor[:, None], 0, BANDS - 1)
     share = np.maximum(1 - np.abs(np.arange(BANDS)[:, None] - at[:, None, :]), 0)  # of each band in each new one
-    result: np.ndarray = energies @ share.astype(np.float32)
-    return result
+    return energies @ share.astype(np.float32)
 
 
 def noises(count: int, length: int, pool: np.ndarray, random: np.random.Generator) -> np.ndarray:
@@ -254,8 +239,7 @@ def noises(count: int, length: int, pool: np.ndarray, random: np.random.Generato
     rate, phase = random.uniform(0.1, 3.0, size=(count, 1)), random.uniform(0, 2 * np.pi, size=(count, 1))
     depth = random.uniform(0.0, 2.5, size=(count, 1)) * (random.random((count, 1)) < 0.3)
     swell = depth * np.sin(2 * np.pi * rate * time + phase)
-    result: np.ndarray = found + colour[:, None, :].astype(np.float32) + swell[:, :, None].astype(np.float32)
-    return result
+    return found + colour[:, None, :].astype(np.float32) + swell[:, :, None].astype(np.float32)
 
 
 def augmented(energies: np.ndarray, pool: np.ndarray, random: np.random.Generator) -> np.ndarray:
@@ -281,5 +265,4 @@ def augmented(energies: np.ndarray, pool: np.ndarray, random: np.random.Generato
     if len(noisy):
         ratio = random.uniform(*RATIOS, size=len(noisy))
         found[noisy] = mixed(found[noisy], noises(len(ratio), length, pool, random), ratio)
-    result: np.ndarray = np.maximum(found, FLOOR).astype(np.float32)
-    return result
+    return np.maximum(found, FLOOR).astype(np.float32)

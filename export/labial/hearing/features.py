@@ -54,8 +54,7 @@ OFFSET, SCALE = 3.0, 4.0
 
 def mel(frequency: np.ndarray) -> np.ndarray:
     """Mels of frequencies in Hz."""
-    result: np.ndarray = 1127.0 * np.log1p(np.asarray(frequency, dtype=np.float64) / 700.0)
-    return result
+    return 1127.0 * np.log1p(np.asarray(frequency, dtype=np.float64) / 700.0)
 
 
 def places() -> np.ndarray:
@@ -63,21 +62,18 @@ def places() -> np.ndarray:
     and the peak of band 1."""
     ends = mel(np.array([LOWEST, HIGHEST]))
     bins = np.arange(WINDOW // 2 + 1) * (RATE / WINDOW)
-    result: np.ndarray = (mel(bins) - ends[0]) / (ends[1] - ends[0]) * (BANDS + 1)
-    return result
+    return (mel(bins) - ends[0]) / (ends[1] - ends[0]) * (BANDS + 1)
 
 
 def triangles() -> np.ndarray:
     """(129, 24) the share of each bin's energy in each band."""
     distance = np.abs(places()[:, None] - np.arange(1, BANDS + 1))
-    result: np.ndarray = np.maximum(1.0 - distance, 0.0)
-    return result
+    return np.maximum(1.0 - distance, 0.0)
 
 
 def window() -> np.ndarray:
     """(256,) the periodic Hann window."""
-    result: np.ndarray = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(WINDOW) / WINDOW)
-    return result
+    return 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(WINDOW) / WINDOW)
 
 
 def frames_of(samples: int) -> int:
@@ -131,8 +127,7 @@ def crop_levels(energies: np.ndarray) -> np.ndarray:
     was before."""
     mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
     fallen = DECAY * np.arange(mean.shape[-1])
-    result: np.ndarray = np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST)
-    return result
+    return np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST)
 
 
 def normalise(energies: np.ndarray) -> np.ndarray:
@@ -148,8 +143,7 @@ def normalise_crops(energies: np.ndarray) -> np.ndarray:
 def relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
     """Features of log2 energies (..., n, 24) at levels (..., n)."""
     relative = np.clip(energies - level[..., None], *RANGE)
-    result: np.ndarray = ((relative + OFFSET) / SCALE).astype(np.float32)
-    return result
+    return ((relative + OFFSET) / SCALE).astype(np.float32)
 
 
 def features(sound: np.ndarray) -> np.ndarray:

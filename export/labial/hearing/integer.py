@@ -49,8 +49,7 @@ SILENT, SILENT_BEFORE, RESTING = 32, 2, 5
 
 def sine_table() -> np.ndarray:
     """(256,) Q15, the sine of 256 points of a turn; the cosine is 64 points further on."""
-    result: np.ndarray = np.rint(32767 * np.sin(2 * np.pi * np.arange(WINDOW) / WINDOW)).astype(np.int64)
-    return result
+    return np.rint(32767 * np.sin(2 * np.pi * np.arange(WINDOW) / WINDOW)).astype(np.int64)
 
 
 def place_table() -> np.ndarray:
@@ -61,20 +60,17 @@ def place_table() -> np.ndarray:
 
 def log_table() -> np.ndarray:
     """(33,) log2 of 1 to 2, in 1/256."""
-    result: np.ndarray = np.rint(np.log2(1 + np.arange(33) / 32) * LOG).astype(np.int64)
-    return result
+    return np.rint(np.log2(1 + np.arange(33) / 32) * LOG).astype(np.int64)
 
 
 def tap_table() -> np.ndarray:
     """(289,) Q15, the filter of the conversion."""
-    result: np.ndarray = np.rint(taps() * 32768).astype(np.int64)
-    return result
+    return np.rint(taps() * 32768).astype(np.int64)
 
 
 def held(value: np.ndarray) -> np.ndarray:
     """Values held to int16."""
-    result: np.ndarray = np.clip(value, -32768, 32767)
-    return result
+    return np.clip(value, -32768, 32767)
 
 
 # ---- The conversion --------------------------------------------------------------------------------------------------
@@ -142,8 +138,7 @@ def _log2(value: np.ndarray) -> np.ndarray:
     bits = _bits(value)
     top = np.where(bits > 16, value >> np.maximum(bits - 16, 0), value << np.maximum(16 - bits, 0))
     table, at, rest = log_table(), top >> 10 & 31, top & 1023
-    result: np.ndarray = (bits - 1) * LOG + table[at] + (((table[at + 1] - table[at]) * rest) >> 10)
-    return result
+    return (bits - 1) * LOG + table[at] + (((table[at + 1] - table[at]) * rest) >> 10)
 
 
 def log_energies(sound: np.ndarray) -> np.ndarray:
@@ -214,8 +209,7 @@ def levels(energies: np.ndarray, silent: np.ndarray, begin: int) -> Levels:
 def normalise(energies: np.ndarray, level: np.ndarray) -> np.ndarray:
     """(n, 24) int64, features in Q9 of log2 energies (n, 24) at levels (n,), both in 1/256."""
     low, high = (round(end * LOG) for end in RANGE)
-    result: np.ndarray = (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
-    return result
+    return (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
 
 
 # ---- The network -----------------------------------------------------------------------------------------------------
@@ -248,8 +242,7 @@ def poses(tables: HearingTables, head: np.ndarray) -> np.ndarray:
     share = (over << 8) // tables.close_width
     pose = tables.mean + ((head[:, classes + 1 :] * tables.scale) >> 9)
     pose += ((tables.closed - pose) * ((share[:, None] * tables.closing) >> 8)) >> 8
-    result: np.ndarray = np.clip(pose, -32767, 32767)
-    return result
+    return np.clip(pose, -32767, 32767)
 
 
 class _Told(NamedTuple):
@@ -347,15 +340,13 @@ def level_after(tables: HearingTables, sound: np.ndarray, begin: int = BEGIN) ->
 
 def _silent_hops(samples: np.ndarray) -> np.ndarray:
     """(n,) bool: which of n hops of samples are silent."""
-    result: np.ndarray = np.ptp(samples.reshape(-1, HOP), axis=1) <= SILENT
-    return result
+    return np.ptp(samples.reshape(-1, HOP), axis=1) <= SILENT
 
 
 def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
     """Poses (T, 13), Q4, that come to rest where a frame, SILENT_BEFORE before it and `ahead` after it are `silent`
     (T,), as all are before the first and after the last."""
-    result: np.ndarray = (pose * _rests(silent, ahead).reshape(-1, 1) + 8192) >> 14
-    return result
+    return (pose * _rests(silent, ahead).reshape(-1, 1) + 8192) >> 14
 
 
 def _rests(silent: np.ndarray, ahead: int) -> np.ndarray:
@@ -381,5 +372,4 @@ def _faded(pose: np.ndarray) -> np.ndarray:
 def _eases(count: int, length: int) -> np.ndarray:
     """(count,) the first steps of a transition of `length` steps, 3 s^2 - 2 s^3, Q14 (``labial_ease``)."""
     share = (np.arange(1, count + 1) << 14) // length
-    result: np.ndarray = ((share * share >> 14) * ((3 << 14) - 2 * share)) >> 14
-    return result
+    return ((share * share >> 14) * ((3 << 14) - 2 * share)) >> 14

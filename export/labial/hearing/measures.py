@@ -64,8 +64,7 @@ def correlation(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """(C,) Pearson's of the columns of two (T, C); NaN where one does not move."""
     first, second = (item - item.mean(axis=0) for item in (np.asarray(one, float), np.asarray(other, float)))
     scale = np.sqrt((first**2).sum(axis=0) * (second**2).sum(axis=0))
-    result: np.ndarray = np.where(scale > 1e-9, (first * second).sum(axis=0) / np.maximum(scale, 1e-9), np.nan)
-    return result
+    return np.where(scale > 1e-9, (first * second).sum(axis=0) / np.maximum(scale, 1e-9), np.nan)
 
 
 def near(where: np.ndarray) -> np.ndarray:

@@ -120,7 +120,7 @@ class HearingModel:
 _TEXT = ("memories", "classes", "close_from", "close_to", "attribution", "training")
 #: Arrays, and those of which each block has one: ``dense_0`` and so on.
 _ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "closed_weight", "closed_bias", "fap_weight", "fap_bias",
-           "fap_mean", "fap_scale", "closed", "closing")  # fmt: skip
+           "fap_mean", "fap_scale", "closed", "closing")
 _OF_BLOCKS = ("dense", "bias", "memory")
 
 

@@ -26,16 +26,14 @@ class Heard(NamedTuple):
 
 def relu(value: np.ndarray) -> np.ndarray:
     """Positive values; zero for the others."""
-    result: np.ndarray = np.maximum(value, 0.0)
-    return result
+    return np.maximum(value, 0.0)
 
 
 def remembered(y: np.ndarray, weight: np.ndarray, past: int, ahead: int, dilation: int) -> np.ndarray:
     """(T, H) a memory with weights (H, taps) over y (T, H), zeros before and after it."""
     padded = np.pad(y, ((past * dilation, ahead * dilation), (0, 0)))
     parts = [padded[k * dilation : k * dilation + len(y)] * weight[:, k] for k in range(past + ahead + 1)]
-    result: np.ndarray = np.sum(parts, axis=0)
-    return result
+    return np.sum(parts, axis=0)
 
 
 def run(model: HearingModel, heard: np.ndarray) -> Heard:
@@ -66,8 +64,7 @@ def smoothed(frames: np.ndarray) -> np.ndarray:
     """Frames (T, 13), each with a quarter of the one before and of the one after it; before the first and after the
     last they stay. What the network tells of single frames moves faster than lips."""
     padded = np.concatenate([frames[:1], frames, frames[-1:]])
-    result: np.ndarray = (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4
-    return result
+    return (padded[:-2] + 2 * padded[1:-1] + padded[2:]) / 4
 
 
 def hear(model: HearingModel, sound: np.ndarray) -> Heard:

@@ -206,5 +206,4 @@ def _around(where: np.ndarray, reach: int) -> np.ndarray:
     """(T,) bool: within `reach` frames of a true one."""
     counts = np.concatenate([[0], np.cumsum(where)])
     at = np.arange(len(where))
-    result: np.ndarray = counts[np.minimum(at + reach + 1, len(where))] > counts[np.maximum(at - reach, 0)]
-    return result
+    return counts[np.minimum(at + reach + 1, len(where))] > counts[np.maximum(at - reach, 0)]

@@ -75,8 +75,7 @@ class HearingTables:
 def row_shifts(weight: np.ndarray) -> np.ndarray:
     """(R,) int64, the shift of each row of weights (R, columns): the largest that keeps its weights below 128."""
     most = np.maximum(np.abs(np.asarray(weight, dtype=np.float64)).max(axis=1), 1e-9)
-    result: np.ndarray = np.clip(np.floor(np.log2(_WEIGHT_MAX / most)), 0, _SHIFT_MAX).astype(np.int64)
-    return result
+    return np.clip(np.floor(np.log2(_WEIGHT_MAX / most)), 0, _SHIFT_MAX).astype(np.int64)
 
 
 def _rows(weight: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
@@ -88,8 +87,7 @@ def _rows(weight: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
 def rounded(weight: np.ndarray) -> np.ndarray:
     """The weights (R, columns) that the tables hold in the place of these, float64."""
     number, shift = _rows(weight)
-    result: np.ndarray = number / 2.0 ** shift[:, None]
-    return result
+    return number / 2.0 ** shift[:, None]
 
 
 def _dense(what: str, weight: np.ndarray, bias: np.ndarray) -> Dense:

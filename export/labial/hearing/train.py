@@ -131,12 +131,10 @@ class Learner(nn.Module):  # type: ignore[misc, unused-ignore]
 
 
 def restore(learner: Learner, model: HearingModel, mean: np.ndarray, scale: np.ndarray) -> None:
-    """Gives a network what a model hears; its frames become those of `mean` and `scale` (13,).
-
-    A network with more units has the model's in front; the others begin at random, and nothing hears them yet. Of
-    memories that reach elsewhere the taps count that both have. Raises LabialError for a model with more units or
-    another number of blocks.
-    """
+    """Gives a network what a model hears; its frames become those of `mean` and `scale` (13,). A network with more
+    units has the model's in front; the others begin at random, and nothing hears them yet. Of memories that reach
+    elsewhere the taps count that both have. Raises LabialError for a model with more units or another number of
+    blocks."""
     units, own = len(model.last_bias), learner.plan.units
     if units > own or len(model.memories) != len(learner.plan.memories):
         raise LabialError(f"a network of {own} units in {len(learner.plan.memories)} blocks cannot begin with a model "
@@ -175,21 +173,19 @@ def model_of(learner: Learner, mean: np.ndarray, scale: np.ndarray, closure: Clo
         return _array(rounded(layer if isinstance(layer, nn.Parameter) else layer.weight))
 
     blocks: List[Any] = list(learner.blocks)
-    return HearingModel(
-        memories=learner.plan.memories, dense=tuple(weights(block.dense) for block in blocks),
-        bias=tuple(_array(block.dense.bias) for block in blocks),
-        memory=tuple(weights(block.memory) for block in blocks), last=weights(learner.last),
-        last_bias=_array(learner.last.bias), class_weight=weights(learner.classes),
-        class_bias=_array(learner.classes.bias), closed_weight=weights(learner.closed)[0],
-        closed_bias=_array(learner.closed.bias), fap_weight=weights(learner.faps),
-        fap_bias=_array(learner.faps.bias), classes=CLASSES, fap_mean=np.asarray(mean, np.float32),
-        fap_scale=np.asarray(scale, np.float32), closed=closure.pose, closing=closure.share, close_from=edges[0],
-        close_to=edges[1], attribution=attribution, training=training)
+    return HearingModel(memories=learner.plan.memories, dense=tuple(weights(block.dense) for block in blocks),
+                        bias=tuple(_array(block.dense.bias) for block in blocks),
+                        memory=tuple(weights(block.memory) for block in blocks), last=weights(learner.last),
+                        last_bias=_array(learner.last.bias), class_weight=weights(learner.classes),
+                        class_bias=_array(learner.classes.bias), closed_weight=weights(learner.closed)[0],
+                        closed_bias=_array(learner.closed.bias), fap_weight=weights(learner.faps),
+                        fap_bias=_array(learner.faps.bias), classes=CLASSES, fap_mean=np.asarray(mean, np.float32),
+                        fap_scale=np.asarray(scale, np.float32), closed=closure.pose, closing=closure.share,
+                        close_from=edges[0], close_to=edges[1], attribution=attribution, training=training)
 
 
 def _array(value: torch.Tensor) -> np.ndarray:
-    result: np.ndarray = value.detach().numpy().astype(np.float32)
-    return result
+    return value.detach().numpy().astype(np.float32)
 
 
 #: Frames of a crop, and crops of a batch.
@@ -323,14 +319,12 @@ class _State:
 def train(folders: Sequence[Prepared], options: Options, checkpoint: str, told: Optional[Callable[[str], None]] = None,
           early: Optional[Path] = None, start: Optional[HearingModel] = None, sounds: Sequence[Prepared] = (),
           teacher: Optional[HearingModel] = None) -> HearingModel:
-    """Trains, in one thread, and chooses how lips close by the takes that are held out.
-
-    The training continues from the file `checkpoint` if there is one; it is written every `CHECKPOINT` steps. `told`
-    receives a line of figures every `REPORT` steps. The unfinished model is written to `early` with each checkpoint.
-    With `start` it begins with what that model hears. Of `sounds` it learns what the `teacher` hears in them, which
-    also has its share in what is learned of the `folders`. Raises LabialError for a folder with next to nothing to
-    learn from, for shares of other folders, and for a `start` that is larger.
-    """
+    """Trains, in one thread, and chooses how lips close by the takes that are held out. The training continues from the
+    file `checkpoint` if there is one; it is written every `CHECKPOINT` steps. `told` receives a line of figures every
+    `REPORT` steps. The unfinished model is written to `early` with each checkpoint. With `start` it begins with what
+    that model hears. Of `sounds` it learns what the `teacher` hears in them, which also has its share in what is
+    learned of the `folders`. Raises LabialError for a folder with next to nothing to learn from, for shares of other
+    folders, and for a `start` that is larger."""
     torch.set_num_threads(1)
     torch.use_deterministic_algorithms(True)
     data = _Data(folders, sounds, teacher, options)

@@ -57,7 +57,7 @@ _STOPS = frozenset("ptkbdgcq\u0261\u0288\u0256\u025f\u0262")
 class _Event(ctypes.Structure):
     _fields_ = [("type", ctypes.c_int), ("identifier", ctypes.c_uint), ("text_position", ctypes.c_int),
                 ("length", ctypes.c_int), ("audio_position", ctypes.c_int), ("sample", ctypes.c_int),
-                ("user_data", ctypes.c_void_p), ("id", ctypes.c_char * 8)]  # fmt: skip
+                ("user_data", ctypes.c_void_p), ("id", ctypes.c_char * 8)]
 
 
 _CALLBACK = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctypes.c_int, ctypes.POINTER(_Event))
@@ -154,8 +154,7 @@ def _levels(samples: np.ndarray, rate: int) -> np.ndarray:
     count = len(samples) * 1000 // (_STEP * rate)
     bounds = -(-np.arange(count + 1) * _STEP * rate // 1000)
     sums = np.concatenate([[0], np.cumsum(np.abs(samples.astype(np.int64)))])
-    result: np.ndarray = (sums[bounds[1:]] - sums[bounds[:-1]]) // np.maximum(np.diff(bounds), 1)
-    return result
+    return (sums[bounds[1:]] - sums[bounds[:-1]]) // np.maximum(np.diff(bounds), 1)
 
 
 #: Seconds after which a program that speaks one text, or all of them, is ended.
@@ -171,12 +170,9 @@ class Spoken(NamedTuple):
 
 
 def speak(voice: str, texts: Sequence[str], pace: float = 1.0, pitch: float = 1.0) -> Iterator[Spoken]:
-    """Each of `texts` as `voice` says it.
-
-    `pace` is the speed and `pitch` the height of the voice, relative to the voice's own, .5 .. 2; festival ignores
-    both, and flite's slt and rms ignore the pitch. Raises LabialError for an unknown voice, for a synthesiser that is
-    not installed, and for a text that it cannot say.
-    """
+    """Each of `texts` as `voice` says it. `pace` is the speed and `pitch` the height of the voice, relative to the
+    voice's own, .5 .. 2; festival ignores both, and flite's slt and rms ignore the pitch. Raises LabialError for an
+    unknown voice, for a synthesiser that is not installed, and for a text that it cannot say."""
     kind, _, name = voice.partition(":")
     if kind not in _KINDS or not name:
         raise LabialError(f"{voice!r} is not a voice: {', '.join(f'{item}:NAME' for item in _KINDS)}")
@@ -319,11 +315,9 @@ def _short(line: str) -> str:
 def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str], minutes: float, seed: int = 0,
                  told: Optional[Callable[[float], None]] = None) -> Written:
     """Speaks random `sentences` with all of `voices` in turn until there are `minutes` of sound, into the folder
-    `path`, new or empty. Pace and pitch change every few sentences. `told` receives the seconds so far.
-
-    The same arguments give the same sounds in a new process, with the same versions of the synthesisers; espeak-ng
-    remembers a little of what it said before. Raises LabialError as :func:`speak`, and for a folder with files.
-    """
+    `path`, new or empty. Pace and pitch change every few sentences. `told` receives the seconds so far. The same
+    arguments give the same sounds in a new process, with the same versions of the synthesisers; espeak-ng remembers a
+    little of what it said before. Raises LabialError as :func:`speak`, and for a folder with files."""
     with needs("writing sounds", "hear"):
         import soundfile
 

@@ -31,14 +31,11 @@ PARTED = np.array([{51: 28, 52: 100, 55: 25, 56: 25, 57: 86, 58: 86}.get(number,
 def raised(target: np.ndarray, labels: np.ndarray, length: np.ndarray, rest: np.ndarray, silence: int,
            floor: np.ndarray, contact: np.ndarray, begin: int = 0,
            parted: np.ndarray = PARTED) -> Tuple[np.ndarray, np.ndarray]:
-    """Targets (N, C) that keep the floors, and where they are in contact, (N, C) bool; they are those of N frames
-    from frame `begin` on.
-
-    `labels` (T,) are the phonemes of all frames, `length` (S,) the frames of each phoneme, `rest` (T,) how far the
-    mouth has come to rest, of REST. `floor` (P, C) is what a phoneme's targets do not fall below, in the unit of
-    `target`; `contact` (P, C) bool says where it is contact, or for silence where the mouth comes to rest; `parted`
-    (C,) is :data:`PARTED` in that unit.
-    """
+    """Targets (N, C) that keep the floors, and where they are in contact, (N, C) bool; they are those of N frames from
+    frame `begin` on. `labels` (T,) are the phonemes of all frames, `length` (S,) the frames of each phoneme, `rest`
+    (T,) how far the mouth has come to rest, of REST. `floor` (P, C) is what a phoneme's targets do not fall below, in
+    the unit of `target`; `contact` (P, C) bool says where it is contact, or for silence where the mouth comes to rest;
+    `parted` (C,) is :data:`PARTED` in that unit."""
     frames = len(target)
     here = slice(begin, begin + frames)
     padded = np.concatenate([np.full(FRAMES, silence), labels, np.full(FRAMES, silence)])
@@ -88,8 +85,7 @@ def _in_the_middle(frame: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """(T,) bool: whether frame (T,) of a phoneme of `whole` (T,) frames is one of those in its middle."""
     held = np.maximum((whole + 1) // 2, FRAMES)
     first = (whole - held) // 2
-    middle: np.ndarray = (frame >= first) & (frame < first + held)
-    return middle
+    return (frame >= first) & (frame < first + held)
 
 
 def _part_of_way(target: np.ndarray, pose: np.ndarray, rest: np.ndarray) -> np.ndarray:
@@ -97,5 +93,4 @@ def _part_of_way(target: np.ndarray, pose: np.ndarray, rest: np.ndarray) -> np.n
     with np.errstate(invalid="ignore"):
         way = (pose - target) * rest[:, None]
     whole = np.issubdtype(target.dtype, np.integer)
-    result: np.ndarray = target + (np.sign(way) * (np.abs(way) // REST) if whole else way / REST)
-    return result
+    return target + (np.sign(way) * (np.abs(way) // REST) if whole else way / REST)

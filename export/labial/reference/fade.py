@@ -21,8 +21,7 @@ CLOSING = np.isin(FAP_NUMBERS, (3, 51, 52, 55, 56, 57, 58))
 
 def smooth(way: np.ndarray) -> np.ndarray:
     """How far transitions have gone at `way`, 0 .. 1: 3 s^2 - 2 s^3."""
-    result: np.ndarray = way * way * (3.0 - 2.0 * way)
-    return result
+    return way * way * (3.0 - 2.0 * way)
 
 
 def closing_steps(held: np.ndarray, contact: np.ndarray) -> int:
@@ -40,20 +39,17 @@ def faded(held: np.ndarray, moved: np.ndarray, fresh: np.ndarray, step: int = 0,
     steps = np.arange(step + 1, step + len(fresh) + 1)[:, None]
     base = held + moved * (1.0 - 0.5 ** np.minimum(steps, FADE))
     way = np.where(CLOSING, steps / closing, steps / (FADE + 1.0))
-    result: np.ndarray = np.where(way >= 1.0, fresh, base + (fresh - base) * smooth(way))
-    return result
+    return np.where(way >= 1.0, fresh, base + (fresh - base) * smooth(way))
 
 
 def eased(held: np.ndarray, frames: int = EASE) -> np.ndarray:
     """(frames, 13): the way of the pose `held` (13,) to rest."""
-    result: np.ndarray = held * (1.0 - smooth(np.arange(1, frames + 1)[:, None] / frames))
-    return result
+    return held * (1.0 - smooth(np.arange(1, frames + 1)[:, None] / frames))
 
 
 def rounded(pose: np.ndarray) -> np.ndarray:
     """The pose (13,) in whole FAP units, as the library rounds it, first to sixteenths."""
-    result: np.ndarray = np.floor((np.rint(16.0 * pose) + 8.0) / 16.0)
-    return result
+    return np.floor((np.rint(16.0 * pose) + 8.0) / 16.0)
 
 
 def rests(pose: np.ndarray) -> bool:

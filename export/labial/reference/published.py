@@ -41,13 +41,10 @@ def whole_piece(frames: Sequence[int]) -> List[Piece]:
 
 
 def pieces(frames: Sequence[int], boundary: Sequence[bool], least: int = 1) -> List[Piece]:
-    """Cuts phonemes of the given frames into pieces.
-
-    A unit lasts from one boundary phoneme to the next, inclusive; a piece has as many units as `least` frames require
-    (one in the published method) and PIECE_MAX allows. Neighbours share the boundary phoneme, its last OVERLAP frames
-    if it is longer. A longer unit is cut, and the parts share OVERLAP frames. Phonemes without frames are omitted. The
-    last phoneme always ends a unit.
-    """
+    """Cuts phonemes of the given frames into pieces. A unit lasts from one boundary phoneme to the next, inclusive; a
+    piece has as many units as `least` frames require (one in the published method) and PIECE_MAX allows. Neighbours
+    share the boundary phoneme, its last OVERLAP frames if it is longer. A longer unit is cut, and the parts share
+    OVERLAP frames. Phonemes without frames are omitted. The last phoneme always ends a unit."""
     spans = []
     start = 0
     for count, is_boundary in zip(frames, boundary):
@@ -102,13 +99,10 @@ def decode(tables: Tables, target: np.ndarray) -> np.ndarray:
 
 
 def viterbi(emission: np.ndarray, transition: np.ndarray, initial: np.ndarray) -> np.ndarray:
-    """The state path of least total cost.
-
-    `emission` is (T, ..., Q), the cost of each state in each step; `transition` (..., Q, Q) that of going [from, to];
-    `initial` (..., Q) that of starting. Costs are negative log-probabilities, +inf forbids. Any leading axes
-    (channels) are searched independently, each with its own tables. Returns (T, ...) int64. Ties go to the lower
-    state, and for a step's predecessor to the lower predecessor.
-    """
+    """The state path of least total cost. `emission` is (T, ..., Q), the cost of each state in each step; `transition`
+    (..., Q, Q) that of going [from, to]; `initial` (..., Q) that of starting. Costs are negative log-probabilities,
+    +inf forbids. Any leading axes (channels) are searched independently, each with its own tables. Returns (T, ...)
+    int64. Ties go to the lower state, and for a step's predecessor to the lower predecessor."""
     emission = np.asarray(emission, dtype=np.float64)
     steps = len(emission)
     into = np.ascontiguousarray(np.swapaxes(transition, -1, -2), dtype=np.float64)  # [to, from]
@@ -139,16 +133,13 @@ def path_cost(path: np.ndarray, emission: np.ndarray, transition: np.ndarray, in
     cost = initial[index + (path[0],)] + emission[(0,) + index + (path[0],)]
     for t in range(1, frames):
         cost = cost + transition[index + (path[t - 1], path[t])] + emission[(t,) + index + (path[t],)]
-    result: np.ndarray = cost
-    return result
+    return cost
 
 
 def solve(terms: Equation) -> np.ndarray:
-    """(T, 13) trajectories m that solve (W' U^-1 W + A) m = W' U^-1 mu + A x, per channel.
-
-    W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
-    those whose window would leave the piece are dropped. The matrix is pentadiagonal; it is factored as L D L'.
-    """
+    """(T, 13) trajectories m that solve (W' U^-1 W + A) m = W' U^-1 mu + A x, per channel. W stacks the static, delta
+    ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame; those whose window would
+    leave the piece are dropped. The matrix is pentadiagonal; it is factored as L D L'."""
     weight, mean = terms.weight.copy(), terms.mean
     frames = len(weight)
     weight[0, :, 1:] = 0.0

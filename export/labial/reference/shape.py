@@ -62,8 +62,7 @@ def choose(mixtures: Union[ShapeTables, Model], phoneme: np.ndarray, duration: n
 def shapes(mixtures: Union[ShapeTables, Model], choice: Choice) -> np.ndarray:
     """(S, C) the selected shapes, FAP."""
     each = mixtures.shape[choice.component] + mixtures.slope[choice.component] * choice.offset[..., None]
-    result: np.ndarray = np.einsum("sk,skj->sj", choice.share, each)
-    return result
+    return np.einsum("sk,skj->sj", choice.share, each)
 
 
 def neighbours(phoneme: np.ndarray, silence: int) -> Tuple[np.ndarray, np.ndarray]:
@@ -90,8 +89,7 @@ def add_kernels(shape_at: np.ndarray, phoneme_at: np.ndarray, kernel: np.ndarray
     """(T, C) the moving target: the frames' shapes (T, C) plus their neighbours' kernels (P, L, C), FAP."""
     if not len(lag):
         return shape_at
-    result: np.ndarray = shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
-    return result
+    return shape_at + kernel[tapped(phoneme_at, lag, silence), np.arange(len(lag))].sum(axis=1)
 
 
 def tapped(phoneme_at: np.ndarray, lag: np.ndarray, silence: int, here: slice = slice(None)) -> np.ndarray:

@@ -36,12 +36,10 @@ def check(tables: Tables, phonemes: Sequence[Tuple[int, int]]) -> None:
 
 def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, articulation: Union[int, Sequence[int]] = 100,
                whole: bool = False, window: int = WINDOW, lag: int = LAG, searched: int = SEARCHED) -> np.ndarray:
-    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
-
-    `articulation` is what the stream is told, in percent, throughout or when each of T frames is taken in. `window` is
-    how many frames beyond those delivered the solution knows, or with `whole` all of them; `lag` how many frames later
-    the search decides; `searched` how many states its steps look at.
-    """
+    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds. `articulation` is
+    what the stream is told, in percent, throughout or when each of T frames is taken in. `window` is how many frames
+    beyond those delivered the solution knows, or with `whole` all of them; `lag` how many frames later the search
+    decides; `searched` how many states its steps look at."""
     target, contact, ends = aims(tables, phonemes)
     gain = gains(np.broadcast_to(articulation, len(target)), tables.stride, lag, len(tables.solved))
     return solution(tables, target, contact, ends, gain, whole=whole, window=window, lag=lag, searched=searched)
@@ -49,19 +47,16 @@ def synthesise(tables: Tables, phonemes: Sequence[Tuple[int, int]], *, articulat
 
 def gains(articulation: np.ndarray, stride: int, lag: int = LAG, channels: int = CHANNELS) -> np.ndarray:
     """(T, C) by how much the channels of a stream's frames are articulated, 1 for 100 percent, when the stream is told
-    `articulation` (T,), percent, with each of T frames that it takes in.
-
-    From the first frame's on it follows by SLEW a frame, and is taken in 256ths. A channel solves its frames in its
-    turn, all with the articulation of the latest frame of the stream.
-    """
+    `articulation` (T,), percent, with each of T frames that it takes in. From the first frame's on it follows by SLEW a
+    frame, and is taken in 256ths. A channel solves its frames in its turn, all with the articulation of the latest
+    frame of the stream."""
     wanted = np.clip(articulation, 0, ARTICULATION_MAX).astype(np.int64)
     reached = wanted.copy()
     for t in range(1, len(wanted)):
         reached[t] = reached[t - 1] + np.clip(wanted[t] - reached[t - 1], -SLEW, SLEW)
     known = np.arange(len(wanted))[:, None] + lag
     turn = known + (np.arange(channels) - known) % stride
-    result: np.ndarray = (np.floor(reached * 2.56 + 0.5) / 256.0)[np.minimum(turn, len(wanted) - 1)]
-    return result
+    return (np.floor(reached * 2.56 + 0.5) / 256.0)[np.minimum(turn, len(wanted) - 1)]
 
 
 def in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int = PART,
@@ -84,10 +79,8 @@ def in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]], part: int = PA
 
 def aims_in_parts(tables: Tables, phonemes: Sequence[Tuple[int, int]],
                   part: int) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray, bool]]:
-    """The result of :func:`aims`, some `part` frames at a time, and whether these are the last.
-
-    A part is made of some phonemes and of those around them that its targets depend on.
-    """
+    """The result of :func:`aims`, some `part` frames at a time, and whether these are the last. A part is made of some
+    phonemes and of those around them that its targets depend on."""
     check(tables, phonemes)
     counts = frame_counts([milliseconds for _, milliseconds in phonemes], tables.fps)
     reach = max([FRAMES, *np.abs(tables.lags).tolist()])
@@ -140,8 +133,7 @@ def targets_and_contact(tables: Tables, phonemes: Sequence[int], milliseconds: S
     shape_at = tables.interpolated(selected[index[here]], knot_shares(length, tables.knots)[here])
     moving = tables.targets(shape_at, tapped(labels, tables.lags, tables.silence, here))
     rest = np.zeros(len(labels), dtype=np.int64) if rest is None else rest
-    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact, here.start,
-                  tables.parted)
+    return raised(moving, labels, length, rest, tables.silence, tables.floor, tables.contact, here.start, tables.parted)
 
 
 def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]],
@@ -159,10 +151,9 @@ def aims(tables: Tables, phonemes: Sequence[Tuple[int, int]],
 def solution(tables: Tables, target: np.ndarray, contact: np.ndarray, ends: np.ndarray,
              gain: Optional[np.ndarray] = None, *, whole: bool = False, window: int = WINDOW, lag: int = LAG,
              begin: int = 0, searched: int = SEARCHED) -> np.ndarray:
-    """(T, 13) float64, FAP units: the motion for targets (T, C) in the tables' positions, some of them in `contact`
-    (T, C); `ends` (T,) are the frames that end a unit, the last one among them; `gain` (T, C) is their articulation,
-    1 without it. The first is frame `begin` of a stream, whose channels have their turns counted from its own
-    first."""
+    """(T, 13) float64, FAP units: the motion for targets (T, C) in the tables' positions, some of them in `contact` (T,
+    C); `ends` (T,) are the frames that end a unit, the last one among them; `gain` (T, C) is their articulation, 1
+    without it. The first is frame `begin` of a stream, whose channels have their turns counted from its own first."""
     if not len(target):
         return np.zeros((0, CHANNELS))
     terms = tables.equation(tables.search(target, ends, lag, begin, searched), target, contact)

@@ -20,12 +20,10 @@ def is_published(model: Model) -> bool:
 
 def synthesise(model: Model, phonemes: Sequence[Tuple[int, int]], *, whole: bool = False,
                articulation: int = 100) -> np.ndarray:
-    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds.
-
-    A model of the published method is searched and solved unit by unit (:mod:`labial.reference.published`), one of
-    Labial's as the run-time does it (:mod:`labial.reference.stream`); with `whole` either is searched and solved over
-    the whole utterance at once. `articulation`, percent, is how far the mouth moves.
-    """
+    """(T, 13) float64, FAP units: the motion of `phonemes`, pairs of phoneme number and milliseconds. A model of the
+    published method is searched and solved unit by unit (:mod:`labial.reference.published`), one of Labial's as the
+    run-time does it (:mod:`labial.reference.stream`); with `whole` either is searched and solved over the whole
+    utterance at once. `articulation`, percent, is how far the mouth moves."""
     if whole or is_published(model):  # without contact, so that all of the motion is in proportion
         gain = float(stream.gains(np.array([articulation]), 1)[0, 0])
         return gain * published.synthesise(FloatTables(model), phonemes, whole=whole)

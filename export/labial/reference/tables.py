@@ -79,20 +79,17 @@ class FloatTables:
         choice = choose(self._mixtures, phoneme, milliseconds / 1000.0, classes[previous], classes[following],
                         soft=bool(model.soft))
         selected = np.repeat(shapes(self._mixtures, choice)[:, None], self.knots, axis=1)
-        result: np.ndarray = selected + pairs_beside(model.pair_key, self._pair_shape, phoneme, previous, following)
-        return result
+        return selected + pairs_beside(model.pair_key, self._pair_shape, phoneme, previous, following)
 
     @staticmethod
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
         """(T, C) the shapes of frames between knots (T, K, C) of `share` (T, K)."""
-        result: np.ndarray = np.einsum("tk,tkc->tc", share, knots)
-        return result
+        return np.einsum("tk,tkc->tc", share, knots)
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """(T, C) targets before floors: `shapes` (T, C) plus the kernels of `neighbours` (T, L), phonemes."""
         taps = np.arange(neighbours.shape[1])
-        result: np.ndarray = shapes + self._kernel[neighbours, taps].sum(axis=1)
-        return result
+        return shapes + self._kernel[neighbours, taps].sum(axis=1)
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
                searched: int = SEARCHED) -> np.ndarray:
@@ -185,24 +182,21 @@ class ExportedTables:
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.interpolated`."""
         share = np.floor(share[:, -1:] * 16384.0 + 1e-9).astype(np.int64)  # of the later knot, Q14
-        result: np.ndarray = knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
-        return result
+        return knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """Like :meth:`FloatTables.targets`, in positions."""
         model = self.exported
         taps = np.arange(neighbours.shape[1])
         added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
-        result: np.ndarray = np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
-        return result
+        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
 
     def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
         """(..., C, W) costs of states (..., C, W) for targets (..., C), in 1/32 nat."""
         model, own = self.exported, (self._channel[:, None], states)
         distance = np.abs(targets[..., None] - model.emission_mean[own])
         z = np.minimum(short_gain_z(distance, model.emission_gain[own]), EMISSION_Z_MAX)
-        result: np.ndarray = z_cost(z) + model.emission_cost[own]
-        return result
+        return z_cost(z) + model.emission_cost[own]
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
                searched: int = SEARCHED) -> np.ndarray:
@@ -233,8 +227,7 @@ class ExportedTables:
 
     def to_fap(self, positions: np.ndarray) -> np.ndarray:
         """Positions in FAP units."""
-        result: np.ndarray = (positions + self.exported.centre) / 16.0
-        return result
+        return (positions + self.exported.centre) / 16.0
 
 
 def _look_ahead(lags: np.ndarray, has_floors: bool) -> int:

@@ -85,22 +85,17 @@ class Forward:
 
 
 def forward(terms: Equation) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(T, C) each: `settled`, rho and kappa of the frames.
-
-    `settled` is the frame's value if all beyond it equalled it. With those beyond given it is
-    m[t] = m[t+1] + rho[t] (settled[t] - m[t+1]) + kappa[t] (m[t+1] - m[t+2]).
-    """
+    """(T, C) each: `settled`, rho and kappa of the frames. `settled` is the frame's value if all beyond it equalled it.
+    With those beyond given it is m[t] = m[t+1] + rho[t] (settled[t] - m[t+1]) + kappa[t] (m[t+1] - m[t+2])."""
     return Forward().take(terms, True)
 
 
 def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: int = 0,
            channels: int = CHANNELS) -> np.ndarray:
-    """(T, C) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`.
-
-    A channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after
+    """(T, C) int64: the frame from which the way back to each frame starts, where the first is the stream's `begin`. A
+    channel's frames k - window - stride .. k - window - 1 are delivered with its block that ends `lag` frames after
     frame k, when the states up to k are decided. Then the frame before k has all that it is tied to, and k itself where
-    it is the stream's last.
-    """
+    it is the stream's last."""
     frame = np.arange(frames)[:, None]
     earliest = frame + window + 1
     end = earliest + (np.arange(channels) - lag - begin - earliest) % stride
@@ -109,17 +104,14 @@ def starts(frames: int, stride: int, window: int = WINDOW, lag: int = 0, begin: 
 
 def solve(terms: Equation, start: np.ndarray) -> np.ndarray:
     """(T, C) trajectories m of equation 3, (W' U^-1 W + A) m = W' U^-1 mu + A x, each frame by a way back of its own,
-    which takes the frames beyond its `start` (T, C) to equal that one. It is exact where that is the last frame.
-
-    W stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
-    those whose window would leave the stream are dropped.
-    """
+    which takes the frames beyond its `start` (T, C) to equal that one. It is exact where that is the last frame. W
+    stacks the static, delta ((m[t+1] - m[t-1]) / 2) and delta-delta (m[t+1] - 2 m[t] + m[t-1]) rows of every frame;
+    those whose window would leave the stream are dropped."""
     return _back(*forward(terms), start)
 
 
 def _back(settled: np.ndarray, rho: np.ndarray, kappa: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(N, C) the first N of the frames of a forward pass (T, C), each by a way back of its own from `start`
-    (N, C)."""
+    """(N, C) the first N of the frames of a forward pass (T, C), each by a way back of its own from `start` (N, C)."""
     frame = np.arange(len(start))[:, None]
     channel = np.arange(settled.shape[1])
     m = np.take_along_axis(settled, start, axis=0)

@@ -37,10 +37,8 @@ def frame_counts(milliseconds: Sequence[int], fps: int) -> List[int]:
 
 
 def pause_cut(frames: int, milliseconds: int, ahead: int, fps: int) -> List[Tuple[int, int]]:
-    """Frames and milliseconds of the parts of a pause: a head and a tail of `ahead` frames, where it has more.
-
-    The kernels reach `ahead` frames into what follows, so that nothing in the head needs to know what ends the pause.
-    """
+    """Frames and milliseconds of the parts of a pause: a head and a tail of `ahead` frames, where it has more. The
+    kernels reach `ahead` frames into what follows, so that nothing in the head needs to know what ends the pause."""
     if not 0 < ahead < frames:
         return [(frames, milliseconds)]
     tail = ahead * 1000 // fps

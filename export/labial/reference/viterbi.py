@@ -26,10 +26,8 @@ LAG = 0
 @dataclass(frozen=True)
 class Chains:
     """What the search sees of the C channels' hidden Markov models. Costs are negative log-probabilities, inf forbids.
-
-    `emission` gives the costs (..., C, W) of states (..., C, W) for targets (..., C). Any state can be entered from
-    the best one of the step before at the cost `leap`; scores are held to it.
-    """
+    `emission` gives the costs (..., C, W) of states (..., C, W) for targets (..., C). Any state can be entered from the
+    best one of the step before at the cost `leap`; scores are held to it."""
 
     mean: np.ndarray  #: (C, Q) ascending
     transition: np.ndarray  #: (C, Q, Q) [from, to]
@@ -44,8 +42,7 @@ def normal_chains(mean: np.ndarray, variance: np.ndarray, log_transition: np.nda
 
     def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
         own = np.arange(len(mean))[:, None], states
-        result: np.ndarray = 0.5 * ((targets[..., None] - mean[own]) ** 2 / variance[own] + np.log(variance[own]))
-        return result
+        return 0.5 * ((targets[..., None] - mean[own]) ** 2 / variance[own] + np.log(variance[own]))
 
     return Chains(mean, -log_transition, -log_initial, LEAP / COST_SCALE, emission)
 
@@ -57,8 +54,7 @@ def block_at(frames: int, stride: int, begin: int = 0, channels: int = CHANNELS)
 
 def _blocks_of(frame: np.ndarray, stride: int, begin: int = 0, channels: int = CHANNELS) -> np.ndarray:
     """(T, C) int64: :func:`block_at` of the frames (T,)."""
-    result: np.ndarray = np.maximum(-(((np.arange(channels) - begin) % stride - frame[:, None]) // stride), 0)
-    return result
+    return np.maximum(-(((np.arange(channels) - begin) % stride - frame[:, None]) // stride), 0)
 
 
 def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
@@ -69,8 +65,7 @@ def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
 def looked_at(frames: int, stride: int, blocks: int, begin: int = 0, channels: int = CHANNELS) -> np.ndarray:
     """(B, C) int64: the frames whose targets the search sees: the middle ones of whole blocks, or the later of two."""
     end = (np.arange(channels) - begin) % stride + stride * np.arange(blocks)[:, None]
-    result: np.ndarray = np.clip(end - stride + 1 + stride // 2, 0, frames - 1)
-    return result
+    return np.clip(end - stride + 1 + stride // 2, 0, frames - 1)
 
 
 def window(position: np.ndarray, mean: np.ndarray, width: int) -> np.ndarray:
@@ -81,8 +76,7 @@ def window(position: np.ndarray, mean: np.ndarray, width: int) -> np.ndarray:
     upper = mean[channel, np.minimum(above, states - 1)]
     lower = mean[channel, np.maximum(above - 1, 0)]
     is_upper = (above < states) & ((above == 0) | (upper - position < position - lower))
-    result: np.ndarray = np.clip(np.where(is_upper, above, above - 1) - width // 2, 0, states - width)
-    return result
+    return np.clip(np.where(is_upper, above, above - 1) - width // 2, 0, states - width)
 
 
 @dataclass(frozen=True)
@@ -109,11 +103,9 @@ class Search:
 
 def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: int = SEARCHED,
            before: Optional[Search] = None) -> Search:
-    """The search of B blocks of N utterances, for the targets (B, N, C) that are looked at.
-
-    `closed` (B, N, C) says which blocks end a unit. Of the edges into a state the least wins, the first of equals, a
-    leap before all; of states the least, the first of equals. `before` is the search of the blocks before these.
-    """
+    """The search of B blocks of N utterances, for the targets (B, N, C) that are looked at. `closed` (B, N, C) says
+    which blocks end a unit. Of the edges into a state the least wins, the first of equals, a leap before all; of states
+    the least, the first of equals. `before` is the search of the blocks before these."""
     width = min(searched, chains.mean.shape[1])
     rank, channel = np.arange(width), np.arange(len(chains.mean))
     first = window(position, chains.mean, width)
@@ -190,10 +182,8 @@ class Decode:
 def decode(chains: Chains, targets: Sequence[np.ndarray], ends: Sequence[np.ndarray], stride: int, *, lag: int = LAG,
            searched: int = SEARCHED, begin: int = 0) -> List[np.ndarray]:
     """(T, C) int64 each: the state paths of utterances, given their targets (T, C) and which frames (T,) end units.
-    Their first frames are frame `begin` of a stream.
-
-    Every utterance has at least one frame, the last of which ends a unit.
-    """
+    Their first frames are frame `begin` of a stream. Every utterance has at least one frame, the last of which ends a
+    unit."""
     channels = len(chains.mean)
     number = [block_at(len(target), stride, begin, channels) for target in targets]
     blocks = max(int(item.max()) for item in number) + 1

@@ -137,12 +137,9 @@ def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Op
     frames, shares = _parts_of(frames)
     values = move(frames, shares, first) if move else outputs(rig, frames, shares)
     for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1)), first):
-        out.write(json.dumps({
-            "frame": number,
-            "time": round(number / fps, 3),
-            **({"faps": dict(zip(FAP_COLUMNS, np.round(frame, 2).tolist()))} if with_faps else {}),
-            rig.name: dict(zip(values, np.round(row, 3).tolist())),
-        }, separators=(",", ":")) + "\n")
+        out.write(json.dumps({"frame": number, "time": round(number / fps, 3),
+                              **({"faps": dict(zip(FAP_COLUMNS, np.round(frame, 2).tolist()))} if with_faps else {}),
+                              rig.name: dict(zip(values, np.round(row, 3).tolist()))}, separators=(",", ":")) + "\n")
 
 
 def _no_head(name: str, fps: int, count: int) -> str:

@@ -129,12 +129,10 @@ def _segments(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -
 
 
 def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]]:
-    """Q12 weights and Q16 gain whose product is nearest to the given one, or None if none is near enough.
-
-    Weights times a power of two and the gain divided by it give the same output. The result is the simplest pair with
-    an error below a twentieth unit for FAPs up to FAP_MAX, else the pair with the least error. If that is not near
-    enough, other factors are tried, the largest weights first.
-    """
+    """Q12 weights and Q16 gain whose product is nearest to the given one, or None if none is near enough. Weights times
+    a power of two and the gain divided by it give the same output. The result is the simplest pair with an error below
+    a twentieth unit for FAPs up to FAP_MAX, else the pair with the least error. If that is not near enough, other
+    factors are tried, the largest weights first."""
     best: Tuple[float, Tuple[int, ...], int] = (math.inf, (), 0)
     for power in sorted(range(-12, 20), key=abs):
         rounded = tuple(math.floor(weight * 2.0**power * 4096 + 0.5) for weight in weights)
@@ -166,13 +164,10 @@ def holds(weights: Row, gain: float) -> bool:
     return _quantise(weights, gain) is not None
 
 
-def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray,
-             shares: Optional[np.ndarray] = None) -> np.ndarray:
+def expected(rig: Rig, table: List[TableOutput], frames: np.ndarray, shares: Optional[np.ndarray] = None) -> np.ndarray:
     """(T, N) float64 values for (T, 13) FAPs and, if known, (T, 15) shares of sounds, 0 .. 1, in units of the hardware,
-    neither rounded nor limited in speed.
-
-    Weights and gains are those of the description; neutral and limits are the table's whole units.
-    """
+    neither rounded nor limited in speed. Weights and gains are those of the description; neutral and limits are the
+    table's whole units."""
     import numpy as np
 
     columns = []
@@ -196,16 +191,14 @@ def _bent(curve: np.ndarray, linear: np.ndarray) -> np.ndarray:
 
     slopes = np.diff(curve[:, 1]) / np.diff(curve[:, 0])
     place = np.clip(np.searchsorted(curve[:, 0], linear, side="right") - 1, 0, len(slopes) - 1)
-    result: np.ndarray = curve[place, 1] + slopes[place] * (linear - curve[place, 0])
-    return result
+    return curve[place, 1] + slopes[place] * (linear - curve[place, 0])
 
 
 def touching(frames: np.ndarray) -> np.ndarray:
     """(T,) contact of the lips in (T, 13) frames, Q12: 0 apart, 4096 touching (include/labial/rig.h)."""
     import numpy as np
 
-    result: np.ndarray = np.clip((APART + frames[:, 3] + frames[:, 4]) * (4096 // (APART - TOUCHING)), 0, 4096)
-    return result
+    return np.clip((APART + frames[:, 3] + frames[:, 4]) * (4096 // (APART - TOUCHING)), 0, 4096)
 
 
 def _comment(rig: Rig, what: str) -> str:
@@ -332,11 +325,11 @@ def json_text(rig: Rig) -> str:
         for key in ("slew", "deadband", "acceleration"):
             if getattr(output, key):
                 raise DataError(rig.path, None, f"output.{output.name}.{key}: is for servos, not for --json")
-        outputs[output.name] = {
-            "weights": output.weights, "gain": output.gain, "neutral": output.neutral, "minimum": output.minimum,
-            "maximum": output.maximum, "invert": int(output.invert), "contact": int(output.closed is not None),
-            "closed": output.closed or 0, **({"curve": output.curve} if output.curve else {}),
-            **({"visemes": output.visemes} if output.visemes else {})}  # fmt: skip
+        outputs[output.name] = {"weights": output.weights, "gain": output.gain, "neutral": output.neutral,
+                                "minimum": output.minimum, "maximum": output.maximum, "invert": int(output.invert),
+                                "contact": int(output.closed is not None), "closed": output.closed or 0,
+                                **({"curve": output.curve} if output.curve else {}),
+                                **({"visemes": output.visemes} if output.visemes else {})}
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outputs.items())
     return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
 

@@ -84,12 +84,10 @@ def read_motions(paths: Sequence[PathLike], timings: Optional[PathLike] = None, 
 
 
 def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
-    """Reads an MPEG-4 .fap text file: (T,) times in seconds and (T, 13) FAPs.
-
-    A header ``2.1 NAME FPS FRAMES``, then two lines per frame: a mask of zeros and ones, one per FAP (a 69th entry,
-    which some programs write, is ignored), and the frame's number with the values of the FAPs whose mask is one. A FAP
-    that a frame does not set keeps its value, 0 to begin with.
-    """
+    """Reads an MPEG-4 .fap text file: (T,) times in seconds and (T, 13) FAPs. A header ``2.1 NAME FPS FRAMES``, then
+    two lines per frame: a mask of zeros and ones, one per FAP (a 69th entry, which some programs write, is ignored),
+    and the frame's number with the values of the FAPs whose mask is one. A FAP that a frame does not set keeps its
+    value, 0 to begin with."""
     lines = read_lines(path)
     rows = [(line, fields_of(text)) for line, text in enumerate(lines, 1) if not is_blank(text)]
     head = rows[0][1] if rows else []
@@ -125,11 +123,9 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
 
 def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[str] = None,
                tier: Optional[str] = None) -> List[Band]:
-    """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path.
-
-    Labels are of the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an
-    error, since only the band's colour depends on it: it stays unchanged, of kind "other".
-    """
+    """Reads phoneme timings of any format that :func:`read_timings` knows as bands; none without a path. Labels are of
+    the set `labels`, and of speech or laughter, whichever knows more of them. An unknown label is not an error, since
+    only the band's colour depends on it: it stays unchanged, of kind "other"."""
     if path is None:
         return []
     segments = [segment for segment in read_timings(path, source, tier=tier) if segment.end > segment.start]

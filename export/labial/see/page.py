@@ -29,12 +29,10 @@ from labial.see.player import player, script_data
 
 
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
-    """The page as text; `title` is the motion's name unless given.
-
-    `audio` is a sound file that browsers play (WAV, MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `limits.PAGE` bytes,
-    whose time 0 is that of the motion's file. Raises DataError, which names it, when it is none, and LabialError for a
-    motion whose frames are too uneven in time to be played.
-    """
+    """The page as text; `title` is the motion's name unless given. `audio` is a sound file that browsers play (WAV,
+    MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `limits.PAGE` bytes, whose time 0 is that of the motion's file. Raises
+    DataError, which names it, when it is none, and LabialError for a motion whose frames are too uneven in time to be
+    played."""
     try:
         fps, frames = even(motion.times, motion.frames)
     except ValueError as error:
@@ -137,10 +135,8 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
               points: Optional[Mapping[str, int]] = None) -> str:
     """The page as text. `avatar` is a .glb or .vrm; `rig` a description, without which the built-in one of the avatar's
     kind of shapes is taken; `audio` as `labial.see.page.page` has it; `three` the folder of the npm package three;
-    `points` are vertices by point, which need not be found.
-
-    Raises DataError for a file that cannot be used and LabialError for an avatar that no rig moves.
-    """
+    `points` are vertices by point, which need not be found. Raises DataError for a file that cannot be used and
+    LabialError for an avatar that no rig moves."""
     where = os.fspath(avatar)
     found = read_head(read_avatar(avatar, everything=True), where, points or {})
     chosen, used = _shapes(found, rig)
@@ -163,16 +159,14 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
             columns[own] = np.round(columns.get(own, 0.0) + share * weights[name], 3)
     away = b'"VRM"' in content[:65536] and b"VRMC_vrm" not in content  # VRM 0 faces the other way
     facing = -1.0 if away else 1.0
-    data: Dict[str, Any] = {
-        "title": title or motion.name,
-        "fps": fps,
-        "start": round(float(motion.times[0]), 6),
-        "shapes": list(columns),
-        "weights": np.stack(list(columns.values()), axis=1).tolist(),
-        "corners": [(found.head.rest[corner] / found.scale * (facing, 1.0, facing)).tolist()
-                    for corner in ("corner_left", "corner_right")],
-        "facing": facing,
-        "head": base64.b64encode(content).decode("ascii"),
-    }
+    data: Dict[str, Any] = {"title": title or motion.name,
+                            "fps": fps,
+                            "start": round(float(motion.times[0]), 6),
+                            "shapes": list(columns),
+                            "weights": np.stack(list(columns.values()), axis=1).tolist(),
+                            "corners": [(found.head.rest[corner] / found.scale * (facing, 1.0, facing)).tolist()
+                                        for corner in ("corner_left", "corner_right")],
+                            "facing": facing,
+                            "head": base64.b64encode(content).decode("ascii")}
     page = HEAD_PLAYER.read_text(encoding="utf-8").replace("@LABIAL_DATA@", script_data(data, audio))
     return page.replace("@LABIAL_IMPORTS@", _imports(find_three(three)))

@@ -66,7 +66,7 @@ def sound(path: PathLike) -> str:
     if size > limits.PAGE:
         most = limits.PAGE // 1_000_000
         raise DataError(path, None, f"a page takes a sound of {most} MB at most, and this one has {size / 1e6:.1f} MB; "
-                                    "as MP3 or Ogg it is shorter")  # fmt: skip
+                                    "as MP3 or Ogg it is shorter")
     for offset, start, kind in _SOUNDS:
         if re.match(start, content[offset : offset + 16], re.DOTALL):
             return f"data:{kind};base64," + base64.b64encode(content).decode("ascii")

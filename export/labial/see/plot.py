@@ -74,11 +74,8 @@ def shade(axes: Axes, bands: Iterable[Band]) -> None:
 def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
     """Writes the bands' labels above the axes and returns them; labels of successive short bands are stepped upwards to
     stay apart, and a label without room is omitted. `upright` suits names that are wider than their bands, such as
-    those of laughter.
-
-    The axes must have their limits and their place in the figure; what changes their width afterwards changes it
-    little.
-    """
+    those of laughter. The axes must have their limits and their place in the figure; what changes their width
+    afterwards changes it little."""
     texts: List[Text] = []
     scale = 72.0 / axes.figure.dpi
     points = axes.get_window_extent().width * scale
@@ -89,10 +86,10 @@ def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = 
         if not left <= middle <= right:
             continue
         place = (middle - left) / (right - left) * points
-        text = axes.annotate(
-            band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3), textcoords="offset points",
-            ha="center", va="bottom", rotation=90 if upright else 0, fontsize=size, color=LABELS.get(band.kind, "0.1"),
-            fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")  # fmt: skip
+        text = axes.annotate(band.label, (middle, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(0, 3),
+                             textcoords="offset points", ha="center", va="bottom", rotation=90 if upright else 0,
+                             fontsize=size, color=LABELS.get(band.kind, "0.1"),
+                             fontweight="bold" if band.kind in ("closed", "labiodental") else "normal")
         half = 0.4 * size if upright else 0.5 * text.get_window_extent().width * scale + 1.0
         row = next((number for number, end in enumerate(taken) if place - half >= end), None)
         if row is None:
@@ -112,10 +109,8 @@ def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
 
 
 def write(figure: Figure, path: PathLike, dpi: int = 110) -> None:
-    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it.
-
-    Figures are drawn and written within :func:`style`.
-    """
+    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it. Figures
+    are drawn and written within :func:`style`."""
     unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
     suffix = Path(path).suffix.lower()
     with writing(path) as file:
@@ -184,12 +179,9 @@ def _span(motions: Sequence[Motion], bands: Sequence[Band]) -> Tuple[float, floa
     return first, last if last > first else first + 0.04
 
 
-def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike,
-         channels: str = DEFAULT) -> None:
-    """Writes the plot of one motion or more to `path` (.png, .svg or .pdf).
-
-    Raises LabialError for another suffix and for channels that do not exist.
-    """
+def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike, channels: str = DEFAULT) -> None:
+    """Writes the plot of one motion or more to `path` (.png, .svg or .pdf). Raises LabialError for another suffix and
+    for channels that do not exist."""
     if Path(path).suffix.lower() not in _SUFFIXES:
         raise LabialError(f"{os.fspath(path)}: the name of a plot ends in {', '.join(_SUFFIXES)}")
     rows = panels(channels)

@@ -48,12 +48,12 @@ _RULES: Dict[str, str] = {
     "ge": "JH EH", "gi": "JH IH", "gy": "JH IY", "h": "HH", "i": "IH", "j": "JH", "k": "K", "l": "L", "m": "M",
     "n": "N", "o": "AA", "p": "P", "q": "K", "r": "R", "s": "S", "t": "T", "u": "AH", "v": "V", "w": "W", "x": "K S",
     "y": "Y", "z": "Z", "'": "",
-}  # fmt: skip
+}
 #: The same at the end of a word.
 _ENDINGS: Dict[str, str] = {
     "e": "", "es": "Z", "ed": "D", "y": "IY", "a": "AH", "o": "OW", "i": "IY", "u": "UW", "s": "Z", "mb": "M",
     "le": "AH L", "re": "ER", "ge": "JH", "ce": "S", "se": "Z", "ies": "IY Z", "ss": "S", "'s": "Z",
-}  # fmt: skip
+}
 #: A vowel, one consonant and an e at the end: the vowel is that of its letter's name.
 _LONG = {"a": "EY", "e": "IY", "i": "AY", "o": "OW", "u": "UW", "y": "AY"}
 #: The end of a phrase, and its most words.
@@ -65,10 +65,8 @@ Lookup = Callable[[str], Optional[str]]
 
 def phrases_of(text: str) -> List[List[str]]:
     """The words of a text in small letters, as the dictionary writes them, in phrases: what stands between punctuation
-    marks or in a line, in even parts where it has more than `_LONGEST` words.
-
-    Raises LabialError for what cannot be read aloud by rule, figures and other alphabets, and names it.
-    """
+    marks or in a line, in even parts where it has more than `_LONGEST` words. Raises LabialError for what cannot be
+    read aloud by rule, figures and other alphabets, and names it."""
     phrases: List[List[str]] = []
     strange: List[str] = []
     last = 0
@@ -199,13 +197,10 @@ def align(path: PathLike, text: Optional[str] = None, progress: Optional[Progres
 
 
 def aligned(path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None) -> Alignment:
-    """English phonemes of a sound file.
-
-    `text` is its text; without it the most probable words are searched. `progress` receives the processed seconds.
-    Warns of words with guessed pronunciations, of a text that does not fit the sound or continues beyond its end, and
-    of stretches of low confidence. Raises DataError for a sound that cannot be read or a text that cannot be found in
-    it, LabialError for a text without words or in another language.
-    """
+    """English phonemes of a sound file. `text` is its text; without it the most probable words are searched. `progress`
+    receives the processed seconds. Warns of words with guessed pronunciations, of a text that does not fit the sound or
+    continues beyond its end, and of stretches of low confidence. Raises DataError for a sound that cannot be read or a
+    text that cannot be found in it, LabialError for a text without words or in another language."""
     samples = read_sound(path)
     recogniser = Recogniser()
     sound = Sound(samples, prepared(samples), silences(samples))

@@ -81,9 +81,7 @@ class Recogniser:
 
     def follow(self, samples: np.ndarray, words: Sequence[str]) -> Optional[List[Tuple[str, float, float]]]:
         """`words` and the silences between them with begin and end in seconds; None where they do not fit at all.
-
-        `samples` is (N,) int16 at `RATE`. All of the words are in it.
-        """
+        `samples` is (N,) int16 at `RATE`. All of the words are in it."""
         if len(samples) < _SHORTEST or not words:
             return None
         self.follower.set_align_text(" ".join(words))
@@ -218,9 +216,7 @@ def with_silences(segments: Sequence[Segment], silences: Sequence[Tuple[float, f
                   silence: str = "SIL") -> List[Segment]:
     """`segments` of ARPABET phonemes brought to the sound's own silences (begin and end, seconds): they end where a
     silence begins and begin where it ends, a stop `LONGEST_CLOSURE` before. `length` is the sound's, in seconds.
-
-    Silence in the segments remains only where the sound is silent. The result has no gaps.
-    """
+    Silence in the segments remains only where the sound is silent. The result has no gaps."""
     sounding = [segment for segment in segments if segment.label != silence]
     times = [[segment.start, segment.end] for segment in sounding]
     for begin, end in silences:

@@ -27,11 +27,9 @@ _BLOCK, _NUMBERS = 10, 4_000_000
 
 def read_sound(path: PathLike) -> np.ndarray:
     """A sound file's samples, (N,) float32 at `RATE`, the mean of its channels or, where they cancel each other, the
-    first one; full scale is 1. For a video, if the package av is installed, its sound from the video's start on.
-
-    Raises DataError for a file that is not a sound or is beyond :mod:`labial.files.limits`, for samples that are not
-    finite and for a file without samples.
-    """
+    first one; full scale is 1. For a video, if the package av is installed, its sound from the video's start on. Raises
+    DataError for a file that is not a sound or is beyond :mod:`labial.files.limits`, for samples that are not finite
+    and for a file without samples."""
     blocks: List[np.ndarray] = []
     try:
         with open(path, "rb") as file, soundfile.SoundFile(file) as sound:

@@ -14,10 +14,8 @@ from labial.files import limits
 
 def pictures(path: PathLike) -> Iterator[Tuple[float, np.ndarray]]:
     """Time in seconds and picture (height, width, 3), uint8 RGB, of every frame of a video's first picture stream.
-
     Times are the file's times of its frames, from its start on, like those of `sound`. Pictures of a camera that was
-    held upright are rotated. Raises DataError for a file that is not a video.
-    """
+    held upright are rotated. Raises DataError for a file that is not a video."""
     try:
         with av.open(os.fspath(path)) as container:
             if not container.streams.video:

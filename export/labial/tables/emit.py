@@ -188,11 +188,8 @@ const labial_names_t {model.name}_names = {{ {size}, {len(model.phonemes)}, entr
 def write(model: ExportedModel, directory: PathLike, *, binary: bool = False) -> List[Path]:
     """Writes the C files, and with `binary` NAME.lbm, into `directory`; returns their paths."""
     check_name(model.name)
-    files = {
-        f"{model.name}.h": header(model).encode(),
-        f"{model.name}.c": source(model).encode(),
-        f"{model.name}_names.c": names_source(model).encode(),
-    }
+    files = {f"{model.name}.h": header(model).encode(), f"{model.name}.c": source(model).encode(),
+             f"{model.name}_names.c": names_source(model).encode()}
     if binary:
         files[f"{model.name}.lbm"] = blob(model)
     with folder(directory) as made:

@@ -51,8 +51,7 @@ def weight_code_below(value: np.ndarray) -> np.ndarray:
 def share_value(code: np.ndarray) -> np.ndarray:
     """int64: the values of the codes of a share in 256ths, 0 .. 256; only 128 has no code."""
     code = np.asarray(code, dtype=np.int64)
-    result: np.ndarray = code + (code >> 7)
-    return result
+    return code + (code >> 7)
 
 
 def share_code(share: np.ndarray) -> np.ndarray:
@@ -64,8 +63,7 @@ def share_code(share: np.ndarray) -> np.ndarray:
 
 def gain(deviation: np.ndarray) -> np.ndarray:
     """int64: the gain of a standard deviation, 2^18 / (deviation sqrt 2), held to 1 .. 65535."""
-    result: np.ndarray = np.clip(np.rint(2.0**18 / (np.asarray(deviation) * np.sqrt(2.0))), 1, 65535).astype(np.int64)
-    return result
+    return np.clip(np.rint(2.0**18 / (np.asarray(deviation) * np.sqrt(2.0))), 1, 65535).astype(np.int64)
 
 
 #: Values of the 256 codes of a short gain.
@@ -78,20 +76,17 @@ def short_gain_code(deviation: np.ndarray) -> np.ndarray:
     order = np.argsort(SHORT_GAINS)
     above = np.clip(np.searchsorted(SHORT_GAINS[order], wanted), 1, 255)
     below, up = SHORT_GAINS[order][above - 1], SHORT_GAINS[order][above]
-    result: np.ndarray = order[np.where(wanted - below <= up - wanted, above - 1, above)].astype(np.int64)
-    return result
+    return order[np.where(wanted - below <= up - wanted, above - 1, above)].astype(np.int64)
 
 
 def short_gain_z(distance: np.ndarray, code: np.ndarray) -> np.ndarray:
     """z in Q6 of distances, int64, by the codes of their short gains."""
-    result: np.ndarray = (distance * (16 + (code & 15))) >> (code >> 4)
-    return result
+    return (distance * (16 + (code & 15))) >> (code >> 4)
 
 
 def z_cost(z: np.ndarray) -> np.ndarray:
     """A Gaussian's exponent z^2 as a cost."""
-    result: np.ndarray = (z * z) >> 7
-    return result
+    return (z * z) >> 7
 
 
 def rounded_shift(value: np.ndarray, shift: int) -> np.ndarray:

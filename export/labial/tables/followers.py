@@ -71,8 +71,7 @@ def complete(motion: np.ndarray, source: np.ndarray, computed: Callable[[np.ndar
 def interpolated(corners: np.ndarray, ends: np.ndarray, values: np.ndarray) -> np.ndarray:
     """(T,) FAP 17 of both corners (T, 2): the `values` (17,) lie at even distances over the range `ends` (2,) of their
     mean, and are constant beyond; all FAP."""
-    result: np.ndarray = np.interp(corners.mean(axis=1), np.linspace(ends[0], ends[1], len(values)), values)
-    return result
+    return np.interp(corners.mean(axis=1), np.linspace(ends[0], ends[1], len(values)), values)
 
 
 def in_integers(corners: np.ndarray, low: int, gain: int, values: np.ndarray) -> np.ndarray:
@@ -80,5 +79,4 @@ def in_integers(corners: np.ndarray, low: int, gain: int, values: np.ndarray) ->
     at = (np.clip(corners.sum(axis=1) - 2 * low, 0, 65535) * gain) >> 12
     index = np.minimum(at >> 8, VALUES - 2)
     share = np.minimum(at - 256 * index, 256)
-    result: np.ndarray = values[index] + (((values[index + 1] - values[index]) * share + 128) >> 8)
-    return result
+    return values[index] + (((values[index + 1] - values[index]) * share + 128) >> 8)

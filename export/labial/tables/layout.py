@@ -91,8 +91,7 @@ def _contexts(model: ExportedModel) -> Optional[np.ndarray]:
         return None
     if not ((model.contexts >= 0) & (model.contexts <= 15)).all():
         raise ModelError("the table contexts cannot be written: a value is not a whole number within 0 .. 15")
-    result: Optional[np.ndarray] = model.contexts[:, 0] | model.contexts[:, 1] << 4
-    return result
+    return model.contexts[:, 0] | model.contexts[:, 1] << 4
 
 
 def _kernel_words(kernels: np.ndarray) -> np.ndarray:
@@ -100,8 +99,7 @@ def _kernel_words(kernels: np.ndarray) -> np.ndarray:
     check_fits("kernels", "b", kernels.reshape(-1))
     filled = np.pad(kernels, [(0, 0), (0, 0), (0, -kernels.shape[-1] % 4)])
     biased = filled.reshape(-1, 4) + 128
-    result: np.ndarray = (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
-    return result
+    return (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
 
 
 def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
@@ -110,13 +108,12 @@ def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
     emissions = np.stack([model.emission_mean[k], model.emission_gain[k], model.emission_cost[k]], axis=1)
     states = np.column_stack([model.state_mean[k], model.state_motion[k], model.state_hold[k], model.state_share[k],
                               model.state_weight[k]])
-    return [
-        Table(f"emissions_{k}", "labial_emission_t", "hBB", emissions, "{ %d, %d, %d }", "states"),
-        Table(f"states_{k}", "labial_state_t", "hbbBBBB", states, "{ %d, { %d, %d }, %d, %d, { %d, %d } }", "states"),
-        Table(f"transitions_{k}", "labial_transition_t", "BB", model.transitions[k].reshape(-1, 2), "{ %d, %d }",
-              "transitions"),
-        _flat(f"initials_{k}", "uint8_t", "B", model.initial[k], "states"),
-    ]
+    return [Table(f"emissions_{k}", "labial_emission_t", "hBB", emissions, "{ %d, %d, %d }", "states"),
+            Table(f"states_{k}", "labial_state_t", "hbbBBBB", states, "{ %d, { %d, %d }, %d, %d, { %d, %d } }",
+                  "states"),
+            Table(f"transitions_{k}", "labial_transition_t", "BB", model.transitions[k].reshape(-1, 2), "{ %d, %d }",
+                  "transitions"),
+            _flat(f"initials_{k}", "uint8_t", "B", model.initial[k], "states")]
 
 
 #: The layout of :func:`channel_scalars`.
@@ -136,21 +133,19 @@ def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
 
 def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
     """Name, value and layout of the first members of ``labial_model_t`` and of the binary form."""
-    values = [
-        ("format", FORMAT, "H"),
-        ("frames_per_second", model.fps, "H"),
-        ("component_count", len(model.cost), "H"),
-        ("phoneme_count", len(model.phonemes), "B"),
-        ("class_count", len(model.classes), "B"),
-        ("state_count", model.transitions.shape[1], "B"),
-        ("predecessor_fours", model.transitions.shape[2] // 4, "B"),
-        ("search_stride", model.search_stride, "B"),
-        ("silence", model.silence, "B"),
-        ("mixture_mean", int(model.soft), "B"),
-        ("kernel_taps", model.kernels.shape[1], "B"),
-        ("kernel_stride", model.kernel_stride, "B"),
-        ("kernel_behind", model.kernel_behind, "B"),
-    ]
+    values = [("format", FORMAT, "H"),
+              ("frames_per_second", model.fps, "H"),
+              ("component_count", len(model.cost), "H"),
+              ("phoneme_count", len(model.phonemes), "B"),
+              ("class_count", len(model.classes), "B"),
+              ("state_count", model.transitions.shape[1], "B"),
+              ("predecessor_fours", model.transitions.shape[2] // 4, "B"),
+              ("search_stride", model.search_stride, "B"),
+              ("silence", model.silence, "B"),
+              ("mixture_mean", int(model.soft), "B"),
+              ("kernel_taps", model.kernels.shape[1], "B"),
+              ("kernel_stride", model.kernel_stride, "B"),
+              ("kernel_behind", model.kernel_behind, "B")]
     for name, value, code in values:
         check_fits(name, code, np.array([value]))
     return values

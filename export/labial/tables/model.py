@@ -32,7 +32,7 @@ _NAMES_SINCE = {"phoneme_class.npy": "viseme_class.npy", "decode_mean.npy": "emi
 _TEXT = (
     "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
     "attribution", "training",
-)  # fmt: skip
+)
 
 
 
@@ -46,7 +46,7 @@ _BOUNDS: Dict[str, Tuple[float, float]] = {
     "emission_mean": _POSITION, "emission_variance": _PRECISION, "state_mean": _POSITION, "state_precision": _PRECISION,
     "state_anchor": (0, 1e15), "log_transition": _LOGARITHM, "log_initial": _LOGARITHM, "protrusion": _POSITION,
     "protrusion_range": _POSITION, "source": (FROM_CORNERS, CHANNELS - 1),
-}  # fmt: skip
+}
 #: Arrays of whole numbers; those that may hold -inf; and those from which others' sizes are taken, with their axes.
 _WHOLE = ("viseme_class", "boundary", "component_count", "kernel_lag", "pair_key", "contact", "source")
 #: What is not there in some files.
@@ -179,35 +179,33 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
     computed = len(model.protrusion)
     expect(computed in (0, VALUES), f"protrusion has {computed} values, not {VALUES}")
     expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
-    return {
-        "viseme_class": (p,),
-        "boundary": (p,),
-        "component_count": (p,),
-        "log_weight": (n,),
-        "duration_mean": (n,),
-        "duration_variance": (n,),
-        "shape": (n, CHANNELS),
-        "slope": (n, CHANNELS),
-        "log_previous": (n, context),
-        "log_next": (n, context),
-        "kernel": (p, taps, CHANNELS),
-        "kernel_lag": (taps,),
-        "pair_key": (pairs, 3),
-        "pair_shape": (pairs, knots, CHANNELS),
-        "floor": (p, CHANNELS),
-        "contact": (p, CHANNELS),
-        "firm": (CHANNELS,),
-        "emission_mean": (CHANNELS, q),
-        "emission_variance": (CHANNELS, q),
-        "state_mean": (CHANNELS, q, 3),
-        "state_precision": (CHANNELS, q, 3),
-        "state_anchor": (CHANNELS, q),
-        "log_transition": (CHANNELS, q, q),
-        "log_initial": (CHANNELS, q),
-        "protrusion": (computed,),
-        "protrusion_range": (2 if computed else 0,),
-        "source": (CHANNELS,),
-    }
+    return {"viseme_class": (p,),
+            "boundary": (p,),
+            "component_count": (p,),
+            "log_weight": (n,),
+            "duration_mean": (n,),
+            "duration_variance": (n,),
+            "shape": (n, CHANNELS),
+            "slope": (n, CHANNELS),
+            "log_previous": (n, context),
+            "log_next": (n, context),
+            "kernel": (p, taps, CHANNELS),
+            "kernel_lag": (taps,),
+            "pair_key": (pairs, 3),
+            "pair_shape": (pairs, knots, CHANNELS),
+            "floor": (p, CHANNELS),
+            "contact": (p, CHANNELS),
+            "firm": (CHANNELS,),
+            "emission_mean": (CHANNELS, q),
+            "emission_variance": (CHANNELS, q),
+            "state_mean": (CHANNELS, q, 3),
+            "state_precision": (CHANNELS, q, 3),
+            "state_anchor": (CHANNELS, q),
+            "log_transition": (CHANNELS, q, q),
+            "log_initial": (CHANNELS, q),
+            "protrusion": (computed,),
+            "protrusion_range": (2 if computed else 0,),
+            "source": (CHANNELS,)}
 
 
 def _check_values(name: str, value: np.ndarray) -> None:
@@ -294,23 +292,18 @@ def mean_pose(model: Model) -> np.ndarray:
     known = model.training.get("mean_pose")
     if isinstance(known, list) and len(known) == CHANNELS:
         return np.asarray(known, dtype=np.float64)
-    result: np.ndarray = model.emission_mean.mean(axis=1)
-    return result
+    return model.emission_mean.mean(axis=1)
 
 
 def widened(model: Model, gain: Union[float, np.ndarray], centre: Optional[np.ndarray] = None,
             contacts: bool = True) -> Model:
     """The model with its targets widened about `centre` (13,), by default the mean pose, by a factor for all channels
-    or one per channel (13,).
-
-    Least squares learns averages, which move less than the averaged motions: lips that follow them mumble. Widening the
-    motion about its mean restores the range; the average error grows, slowly at first.
-
-    All terms of a target are linear, so that the factor applies to the tables: shape' = c + g (shape - c); slopes,
-    kernels and pairs are multiplied by g. Floors, where lips meet, stay; the search and equation 3 follow the targets.
-    Without `contacts` phonemes in which lips meet keep their own shape in the channels in which they do, so that they
-    press no harder where others open wider.
-    """
+    or one per channel (13,). Least squares learns averages, which move less than the averaged motions: lips that follow
+    them mumble. Widening the motion about its mean restores the range; the average error grows, slowly at first. All
+    terms of a target are linear, so that the factor applies to the tables: shape' = c + g (shape - c); slopes, kernels
+    and pairs are multiplied by g. Floors, where lips meet, stay; the search and equation 3 follow the targets. Without
+    `contacts` phonemes in which lips meet keep their own shape in the channels in which they do, so that they press no
+    harder where others open wider."""
     factor = np.broadcast_to(np.asarray(gain, dtype=np.float64), (CHANNELS,))
     if centre is None:
         centre = mean_pose(model)

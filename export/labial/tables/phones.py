@@ -32,11 +32,9 @@ def phone_set(model: Model) -> PhoneSet:
 def read_stream(path: PathLike, model: Model, labels: str = AUTO, source: Optional[str] = None,
                 tier: Optional[str] = None) -> Stream:
     """Reads phoneme timings of the format `source`, or of any that :func:`read_timings` tells; gaps are silence.
-    `labels` is the set of the labels: "arpabet", "ipa", "xsampa" or "auto"; `tier` names the tier of a TextGrid.
-
-    The first phoneme lasts from time 0. Raises DataError, which names the file and the line, for malformed timings;
-    unknown labels become the nearest phoneme, with one warning each.
-    """
+    `labels` is the set of the labels: "arpabet", "ipa", "xsampa" or "auto"; `tier` names the tier of a TextGrid. The
+    first phoneme lasts from time 0. Raises DataError, which names the file and the line, for malformed timings; unknown
+    labels become the nearest phoneme, with one warning each."""
     segments = read_timings(path, source, tier=tier)
     if segments[-1].end > _LONG:
         warnings.warn(f"{os.fspath(path)}: its motion lasts {segments[-1].end / 3600:.1f} hours, which takes time and "

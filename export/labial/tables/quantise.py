@@ -117,14 +117,12 @@ _AXIS_OF_CHANNELS = {
     "kernel_scale": 0, "pair_scale": 0, "emission_mean": 0, "emission_gain": 0, "emission_cost": 0, "initial": 0,
     "state_mean": 0, "state_motion": 0, "motion_scale": 0, "state_hold": 0, "state_share": 0, "state_weight": 0,
     "transitions": 0,
-}  # fmt: skip
+}
 
 
 def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> ExportedModel:
-    """The exported tables of `model`, with the `predecessors` most frequent transitions into each state.
-
-    Raises ModelError if the model exceeds the library's limits.
-    """
+    """The exported tables of `model`, with the `predecessors` most frequent transitions into each state. Raises
+    ModelError if the model exceeds the library's limits."""
     _check_limits(model)
     first, kept = _shared_components(model)
     centre = _centres(model)
@@ -200,15 +198,13 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
 
 
 def _check_limits(model: Model) -> None:
-    counts = {
-        "phonemes": len(model.phonemes),
-        "classes": len(model.classes),
-        "components": int(np.max(model.component_count)),
-        "states": model.log_initial.shape[1],
-        "taps": len(model.kernel_lag),
-        "stride": model.search_stride,
-        "reach": max([*np.abs(model.kernel_lag), 0]),
-    }
+    counts = {"phonemes": len(model.phonemes),
+              "classes": len(model.classes),
+              "components": int(np.max(model.component_count)),
+              "states": model.log_initial.shape[1],
+              "taps": len(model.kernel_lag),
+              "stride": model.search_stride,
+              "reach": max([*np.abs(model.kernel_lag), 0])}
     for what, count in counts.items():
         if count > LIMITS[what]:
             raise ModelError(f"the model has {what} {count}, the library's limit is {LIMITS[what]}")
@@ -228,8 +224,7 @@ def _taps_behind(lags: np.ndarray) -> int:
 def _centres(model: Model) -> np.ndarray:
     """(13,) middle of the range of each channel's states and shapes, Q4."""
     values = np.concatenate([model.state_mean[..., 0], model.emission_mean], axis=1)
-    result: np.ndarray = np.rint((values.min(axis=1) + values.max(axis=1)) / 2.0 * POSITION_SCALE).astype(np.int64)
-    return result
+    return np.rint((values.min(axis=1) + values.max(axis=1)) / 2.0 * POSITION_SCALE).astype(np.int64)
 
 
 def _positions(values: np.ndarray, what: str) -> np.ndarray:
@@ -240,8 +235,7 @@ def _positions(values: np.ndarray, what: str) -> np.ndarray:
         at = ", ".join(map(str, np.unravel_index(int(far.argmax()), far.shape)))
         raise ModelError(f"{what}[{at}] lies {np.abs(values).max():.0f} FAP units from the channel's centre, "
                          f"the library's limit is {POSITION_MAX // POSITION_SCALE}")
-    result: np.ndarray = positions.astype(np.int64)
-    return result
+    return positions.astype(np.int64)
 
 
 def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.ndarray]:
@@ -293,16 +287,14 @@ def _protrusion(model: Model) -> Optional[np.ndarray]:
 def _costs(log_probability: np.ndarray, largest: int) -> np.ndarray:
     """Costs of log-probabilities (..., Q), less the least of their row, held to `largest`."""
     best = log_probability.max(axis=-1, keepdims=True)
-    result: np.ndarray = np.minimum(np.rint((best - log_probability) * COST_SCALE), largest).astype(np.int64)
-    return result
+    return np.minimum(np.rint((best - log_probability) * COST_SCALE), largest).astype(np.int64)
 
 
 def _component_costs(model: Model, deviation: np.ndarray) -> np.ndarray:
     cost = np.rint((np.log(deviation) - model.log_weight) * COST_SCALE)
     for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
         cost[begin:end] -= cost[begin:end].min()
-    result: np.ndarray = np.minimum(cost, 65535).astype(np.int64)
-    return result
+    return np.minimum(cost, 65535).astype(np.int64)
 
 
 def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
@@ -311,8 +303,7 @@ def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
     cost = -np.stack([model.log_previous, model.log_next], axis=1)
     for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
         cost[begin:end] -= cost[begin:end].min(axis=0)  # which changes no choice among them
-    result: Optional[np.ndarray] = np.minimum(np.rint(2.0 * cost[kept]), 15).astype(np.int64)
-    return result
+    return np.minimum(np.rint(2.0 * cost[kept]), 15).astype(np.int64)
 
 
 def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
@@ -377,11 +368,9 @@ def scaled(motion: np.ndarray, scale: np.ndarray) -> np.ndarray:
 
 def state_weights(model: Model, motion: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Codes of the states' holds (13, Q), of the weights of delta (a quarter) and delta-delta (13, Q, 2), and of the
-    weight in contact (13,); `motion` (13, Q, 2) are the means of delta and delta-delta, in positions.
-
-    Each channel's precisions are scaled as high as the largest diagonal element allows, after bringing each state
-    within the other bounds of equation 3.
-    """
+    weight in contact (13,); `motion` (13, Q, 2) are the means of delta and delta-delta, in positions. Each channel's
+    precisions are scaled as high as the largest diagonal element allows, after bringing each state within the other
+    bounds of equation 3."""
     hold = np.zeros(model.state_anchor.shape, dtype=np.int64)
     moving = np.zeros((*hold.shape, 2), dtype=np.int64)
     firm = np.zeros(CHANNELS, dtype=np.int64)

@@ -12,7 +12,7 @@ VISEMES: Mapping[str, Tuple[str, ...]] = {
     "kk": ("K", "G", "NG"), "CH": ("CH", "JH", "SH", "ZH"), "SS": ("S", "Z"), "nn": ("N", "L"), "RR": ("R", "ER"),
     "aa": ("AA", "AE", "AH", "AW", "AY"), "E": ("EH", "EY"), "ih": ("IH", "IY", "Y"), "oh": ("AO", "OW", "OY"),
     "ou": ("UH", "UW", "W"),
-}  # fmt: skip
+}
 #: The viseme of each phoneme; without /HH/.
 VISEME_OF: Mapping[str, str] = {phoneme: viseme for viseme, members in VISEMES.items() for phoneme in members}
 #: A share of one in the C library.
@@ -35,7 +35,7 @@ DOMINANCES: Mapping[str, Dominance] = {
     "kk": _TONGUE, "CH": Dominance(1280, 16, 21), "SS": Dominance(1024, 20, 25), "nn": _TONGUE,
     "RR": Dominance(768, 12, 12), "aa": _VOWEL, "E": _VOWEL, "ih": _VOWEL, "oh": Dominance(896, 9, 11),
     "ou": Dominance(896, 8, 11),
-}  # fmt: skip
+}
 #: Milliseconds from which on no sound counts.
 AROUND = 120
 #: FAP 44, 45 and 46 of each viseme (docs/method.md).
@@ -43,4 +43,4 @@ TONGUES: Dict[str, Tuple[int, int, int]] = {
     "sil": (0, 0, 0), "PP": (0, 0, 0), "FF": (0, 0, 0), "TH": (160, 240, 40), "DD": (400, 60, 80),
     "kk": (-120, -100, 420), "CH": (300, 0, 260), "SS": (260, 40, 160), "nn": (400, 60, 60), "RR": (300, -120, 200),
     "aa": (-80, -40, -80), "E": (40, 20, 160), "ih": (60, 40, 320), "oh": (-60, -120, 120), "ou": (-40, -120, 280),
-}  # fmt: skip
+}

@@ -51,12 +51,10 @@ def assign(points: np.ndarray, centres: np.ndarray) -> Tuple[np.ndarray, np.ndar
 
 class _Nearest:
     """:func:`assign` for centres that move a little from call to call (Lloyd's iteration), with the same results bit
-    for bit. It skips points whose nearest centre cannot have changed.
-
-    A point keeps its centre if that is nearer than any other centre can be (Hamerly 2010). Each point has a lower bound
-    of the distance to its second nearest centre. Each call reduces it by the largest move of the centres near its own;
-    farther centres are bounded by their distance from its own centre.
-    """
+    for bit. It skips points whose nearest centre cannot have changed. A point keeps its centre if that is nearer than
+    any other centre can be (Hamerly 2010). Each point has a lower bound of the distance to its second nearest centre.
+    Each call reduces it by the largest move of the centres near its own; farther centres are bounded by their distance
+    from its own centre."""
 
     def __init__(self, points: np.ndarray) -> None:
         self._points = points
@@ -146,10 +144,8 @@ def _means(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray,
 
 def lloyd(points: np.ndarray, centres: np.ndarray,
           tolerance: float = TOLERANCE) -> Tuple[np.ndarray, np.ndarray, float]:
-    """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance.
-
-    A centre that loses all its points moves beside the centre of the cell with the largest distortion, which it splits.
-    """
+    """Refines (Q, D) centres on (n, D) points. Returns centres, cells (n,) and the mean squared distance. A centre that
+    loses all its points moves beside the centre of the cell with the largest distortion, which it splits."""
     before, nearest = np.inf, _Nearest(points)
     for _ in range(MAXIMUM_ITERATIONS):
         cell, distance = nearest(centres)
@@ -215,8 +211,7 @@ def transitions(paths: Sequence[np.ndarray], size: int, stride: int = 1) -> np.n
         np.add.at(counts, (path[:-stride], path[stride:]), 1)
     counts += NEIGHBOUR_COUNT * (np.abs(np.subtract.outer(np.arange(size), np.arange(size))) <= 1)
     with np.errstate(divide="ignore"):
-        result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
-        return result
+        return np.log(counts / counts.sum(axis=1, keepdims=True))
 
 
 def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int) -> np.ndarray:
@@ -225,18 +220,15 @@ def initials(paths: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: in
     counts = INITIAL_COUNT * occurring / occurring.sum()
     for path, start in zip(paths, starts):
         counts = counts + np.bincount(path[start], minlength=size)
-    result: np.ndarray = np.log(counts / counts.sum())
-    return result
+    return np.log(counts / counts.sum())
 
 
 def train_channel(motion: Sequence[np.ndarray], starts: Sequence[np.ndarray], size: int, stride: int = 1,
                   divide: Division = lbg, normalised: bool = True) -> Codebook:
-    """The codebook of one channel.
-
-    `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts` the frames at which boundary
-    phonemes, and so units, begin; `stride` is how many frames a transition spans. Features are `normalised` by their
-    standard deviations before they are clustered, or clustered as they are, in FAP units per frame and frame squared.
-    """
+    """The codebook of one channel. `motion` holds the channel's human motion (T,) of every sequence in FAP, `starts`
+    the frames at which boundary phonemes, and so units, begin; `stride` is how many frames a transition spans. Features
+    are `normalised` by their standard deviations before they are clustered, or clustered as they are, in FAP units per
+    frame and frame squared."""
     points = np.concatenate([features(item) for item in motion])
     overall = points.var(axis=0)
     scale = np.where(normalised & (overall > 1e-12), np.sqrt(overall), 1.0)

@@ -50,11 +50,8 @@ FIRMEST = {"bilabial": 0.5, "labiodental": 0.9}
 
 def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
     """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile; and
-    (P, 13) bool: where it is contact, or lips are HELD.
-
-    The pose is the mean, by weight, over the FIRMEST occurrences of the phoneme's class, each at its frame of closest
-    contact.
-    """
+    (P, 13) bool: where it is contact, or lips are HELD. The pose is the mean, by weight, over the FIRMEST occurrences
+    of the phoneme's class, each at its frame of closest contact."""
     least = np.array([np.percentile(taught(material, channel), LEAST) for channel in range(CHANNELS)])
     result = np.tile(least, (len(phone_set.phonemes), 1))
     contacts = np.zeros(result.shape, dtype=bool)
@@ -285,5 +282,4 @@ def _stretched(model: Model, material: Sequence[Recording], workers: Workers, en
 
     low, high = (excess(stretch) for stretch in STRETCH)
     stretch = brentq(excess, *STRETCH) if low * high < 0 else STRETCH[int(abs(high) < abs(low))]
-    result: np.ndarray = middle + (ends - middle) * stretch
-    return result
+    return middle + (ends - middle) * stretch

@@ -92,8 +92,7 @@ def kernel_prior(viseme_class: np.ndarray, taps: int, penalties: Penalties) -> n
 
 def code_of(phoneme: np.ndarray, side: Union[int, np.ndarray], neighbour: np.ndarray, phonemes: int) -> np.ndarray:
     """A phoneme with its previous (`side` 0) or next neighbour (1) as one number, (2 phoneme + side) P + neighbour."""
-    result: np.ndarray = (2 * phoneme + side) * phonemes + neighbour
-    return result
+    return (2 * phoneme + side) * phonemes + neighbour
 
 
 def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np.ndarray:
@@ -109,10 +108,8 @@ def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np
 def _design(material: Sequence[Recording], choice: Choice, deviation: np.ndarray, phonemes: int, lag: np.ndarray,
             silence: int, pairs: np.ndarray, knots: int) -> csr_matrix:
     """(T, P L + 2 N + R K) of all frames: one-hot taps, shares of the components, those times (d - mu_c) / sigma_c, and
-    the shares of the knots of those `pairs` (R,), codes, that the phoneme and its neighbours are.
-
-    `deviation` is (N,), sigma_c in seconds.
-    """
+    the shares of the knots of those `pairs` (R,), codes, that the phoneme and its neighbours are. `deviation` is (N,),
+    sigma_c in seconds."""
     taps, components = len(lag), len(deviation)
     column = np.concatenate([tapped(item.phoneme_at(), lag, silence) for item in material]) * taps + np.arange(taps)
     rows = len(column)
@@ -203,11 +200,9 @@ class _Sums:
 
     def equations(self, intercept: float, prior: Union[float, np.ndarray] = 0.0) -> Tuple[np.ndarray, np.ndarray]:
         """The matrix (D, D) and right sides (D, C) of the normal equations, X' W X + prior and X' W y, of which an
-        intercept for each utterance, of penalty `intercept`, is solved for.
-
-        With S the utterances' weighted sums of the design and s their weights, these are
-        X' W X + prior - S' (s + intercept)^-1 S and X' W y - S' (s + intercept)^-1 (weighted sums of y).
-        """
+        intercept for each utterance, of penalty `intercept`, is solved for. With S the utterances' weighted sums of the
+        design and s their weights, these are X' W X + prior - S' (s + intercept)^-1 S and X' W y - S' (s +
+        intercept)^-1 (weighted sums of y)."""
         normal, right = self._normal.toarray(), self._right
         normal += prior
         if np.isfinite(intercept):
@@ -233,8 +228,7 @@ class Kernels:
         around = neighbours(item.phoneme, silence)
         added = pairs_beside(self.pair_key, self.pair_shape, item.phoneme, *around)
         shares = knot_shares(item.length, self.pair_shape.shape[1])
-        result: np.ndarray = np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
-        return result
+        return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
 
 
 @dataclass(frozen=True)
@@ -254,8 +248,7 @@ class Regression:
     @property
     def deviation(self) -> np.ndarray:
         """(N,) seconds: the standard deviation of each component's durations."""
-        result: np.ndarray = np.sqrt(self.tables.duration_variance)
-        return result
+        return np.sqrt(self.tables.duration_variance)
 
     @property
     def sizes(self) -> Tuple[int, int, int]:
@@ -294,22 +287,18 @@ class Regression:
         for block in _blocks(material, choice, self.silence, self.penalties, self.fps):  # row by row, as a sum of all
             total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
             weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
-        result: np.ndarray = total[0] / weight[0]
-        return result
+        return total[0] / weight[0]
 
     def kernels(self, solution: np.ndarray, base: np.ndarray) -> Kernels:
         """The result of coefficients (D, 13), for motion relative to `base` (13,) FAP."""
         phonemes = len(self.viseme_class)
         taps, components, _ = self.sizes
         shape, slope, pair = np.split(solution[taps:], [components, 2 * components])
-        fitted = Kernels(
-            kernel=solution[:taps].reshape(phonemes, len(self.lag), CHANNELS),
-            lag=self.lag,
-            tables=replace(self.tables, shape=base + shape, slope=slope / self.deviation[:, None]),
-            pair_key=np.stack([self.pairs // (2 * phonemes), self.pairs // phonemes % 2, self.pairs % phonemes],
-                              axis=1),
-            pair_shape=pair.reshape(self.knots, len(self.pairs), CHANNELS).transpose(1, 0, 2),
-        )
+        fitted = Kernels(kernel=solution[:taps].reshape(phonemes, len(self.lag), CHANNELS), lag=self.lag,
+                         tables=replace(self.tables, shape=base + shape, slope=slope / self.deviation[:, None]),
+                         pair_key=np.stack([self.pairs // (2 * phonemes), self.pairs // phonemes % 2,
+                                            self.pairs % phonemes], axis=1),
+                         pair_shape=pair.reshape(self.knots, len(self.pairs), CHANNELS).transpose(1, 0, 2))
         return substitute(fitted, self.stand_in)
 
 

@@ -147,9 +147,8 @@ def _mixture_tasks(items: Occurrences, plan: Plan, classes: int, components: int
     for members in plan.members:
         if members is not None:
             rows = np.flatnonzero(np.isin(items.phoneme, members) & learnt)
-            tasks.append(
-                _MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes, seed)
-            )
+            tasks.append(_MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes,
+                                      seed))
     return tasks
 
 
@@ -181,8 +180,7 @@ def _unit_starts(item: Recording, boundary: np.ndarray) -> np.ndarray:
     starts = np.cumsum(item.length) - item.length
     begins = boundary[item.phoneme].copy()
     begins[[0, -1]] = True
-    result: np.ndarray = starts[begins & (item.length > 0)]
-    return result
+    return starts[begins & (item.length > 0)]
 
 
 def _stretches(material: Sequence[Recording], starts: Sequence[np.ndarray],
@@ -207,12 +205,10 @@ def _setting(kind: str, method: str, fps: int, codebook: Optional[int], componen
         raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
     usual = SIZES[kind] if method == "labial" else (CODEBOOK, COMPONENTS)
     codebook, components = (own if given is None else given for given, own in zip((codebook, components), usual))
-    for name, value, most in (
-        ("fps", fps, 250),
-        ("codebook", codebook, LIMITS["states"]),
-        ("components", components, LIMITS["components"]),
-        ("search stride", search_stride, LIMITS["stride"]),
-    ):
+    for name, value, most in (("fps", fps, 250),
+                              ("codebook", codebook, LIMITS["states"]),
+                              ("components", components, LIMITS["components"]),
+                              ("search stride", search_stride, LIMITS["stride"])):
         if not 1 <= value <= most:
             raise LabialError(f"{name} is {value}, not within 1 .. {most}")
     if not 0.0 <= look_ahead <= REACH:
@@ -357,16 +353,15 @@ def _fit_solved(setting: _Setting, material: Sequence[Recording], shaped: _Shape
 
 def _training(setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan) -> Dict[str, object]:
     """The model's record of its training."""
-    training: Dict[str, object] = {
-        **_extent(material, setting.silence),
-        "codebook": setting.codebook,
-        "components": setting.components,
-        "seed": setting.seed,
-        "episodes": len(material),
-        "frames": int(sum(len(item.frames) for item in material)),
-        "occurrences": {label: int(count) for label, count in zip(setting.phone_set.phonemes, counts)},
-        "pooled": dict(plan.pooled),
-    }
+    training: Dict[str, object] = {**_extent(material, setting.silence),
+                                   "codebook": setting.codebook,
+                                   "components": setting.components,
+                                   "seed": setting.seed,
+                                   "episodes": len(material),
+                                   "frames": int(sum(len(item.frames) for item in material)),
+                                   "occurrences": {label: int(count) for label,
+                                                   count in zip(setting.phone_set.phonemes, counts)},
+                                   "pooled": dict(plan.pooled)}
     if setting.extended:
         training.update(penalties=asdict(setting.penalties), scales=asdict(setting.scales),
                         look_ahead=setting.look_ahead)
@@ -397,9 +392,8 @@ def train(corpus: Sequence[Episode], *, kind: str, method: str, fps: int = FPS, 
           progress: bool = True, attribution: str = "", look_ahead: float = LOOK_AHEAD,
           search_stride: int = SEARCH_STRIDE, divide: Division = lbg, normalise: bool = False,
           talker_variance: Optional[float] = None, symmetric: bool = True) -> Model:
-    """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind.
-
-    `method` is "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,
+    """Trains a model of `kind` ("speech" or "laughter") on episodes whose labels are phonemes of that kind. `method` is
+    "paper", the published one, or "labial" with all additions. `codebook` is Q, the states of each channel,
     `components` C of each phoneme's mixture; None is what the method takes for the kind. `look_ahead` is how far the
     temporal kernels reach into what follows, seconds; less makes a stream's frames earlier. `search_stride` is how many
     frames share a state of the decoded path. The published method has neither; its features are clustered as they are,
@@ -409,8 +403,7 @@ def train(corpus: Sequence[Episode], *, kind: str, method: str, fps: int = FPS, 
     codebooks' cells; with more than one job it must be a module-level function. `attribution` is stored in the model:
     redistribution requires it. The same arguments give the same model, whatever `jobs`, the number of processes, and
     `engine` are (:class:`labial.train.workers.Workers`). The model records the substitutes of phonemes
-    (:func:`backed_off`), the corpus's counts and all options.
-    """
+    (:func:`backed_off`), the corpus's counts and all options."""
     setting = _setting(kind, method, fps, codebook, components, seed, look_ahead, search_stride, divide, normalise,
                        talker_variance, symmetric)
     check_jobs(jobs)

@@ -97,10 +97,8 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
 
 
 def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Recording:
-    """The recording with its pauses divided like in the run-time with kernels that look `ahead` frames ahead.
-
-    The apex stays with its part; that of the other part is its middle.
-    """
+    """The recording with its pauses divided like in the run-time with kernels that look `ahead` frames ahead. The apex
+    stays with its part; that of the other part is its middle."""
     rows: List[Tuple[int, float, int, int]] = []
     resting = np.zeros(len(item.frames), dtype=np.int64)
     begin = 0

@@ -108,11 +108,8 @@ def back_off(counts: np.ndarray, phone_set: PhoneSet) -> Plan:
 
 
 def shape_tables(mixtures: List[Mixture], *, conditional: bool) -> ShapeTables:
-    """Tables of the mixtures of P phonemes.
-
-    `conditional` gives each component its regression of the shape on the duration, slope = cov(m, d) / var(d). Without
-    it the shape is mu_c^(m) alone, as in equation 2.
-    """
+    """Tables of the mixtures of P phonemes. `conditional` gives each component its regression of the shape on the
+    duration, slope = cov(m, d) / var(d). Without it the shape is mu_c^(m) alone, as in equation 2."""
 
     def joined(name: str) -> np.ndarray:
         return np.concatenate([getattr(mixture, name) for mixture in mixtures])
@@ -157,8 +154,7 @@ def log_normal(vectors: np.ndarray, mean: np.ndarray, covariance: np.ndarray) ->
         factor = np.linalg.cholesky(spread)
         z = solve_triangular(factor, (vectors - centre).T, lower=True)
         result[:, c] = -0.5 * (z**2).sum(axis=0) - np.log(np.diag(factor)).sum()
-    found: np.ndarray = result - 0.5 * vectors.shape[1] * np.log(2 * np.pi)
-    return found
+    return result - 0.5 * vectors.shape[1] * np.log(2 * np.pi)
 
 
 def log_joint(samples: Samples, mixture: Mixture) -> np.ndarray:
@@ -193,8 +189,7 @@ def _class_table(responsibility: np.ndarray, of: np.ndarray, classes: int) -> np
     """(C, V) smoothed log-probabilities of the classes (n,) under responsibilities (n, C)."""
     counts: np.ndarray = np.stack([np.bincount(of, weights=column, minlength=classes) for column in responsibility.T])
     counts = counts + CLASS_PRIOR
-    result: np.ndarray = np.log(counts / counts.sum(axis=1, keepdims=True))
-    return result
+    return np.log(counts / counts.sum(axis=1, keepdims=True))
 
 
 def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
@@ -216,8 +211,7 @@ def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
 def expect(samples: Samples, mixture: Mixture) -> np.ndarray:
     """The E step: responsibilities (n, C)."""
     joint = log_joint(samples, mixture)
-    result: np.ndarray = np.exp(joint - logsumexp(joint, axis=1, keepdims=True))
-    return result
+    return np.exp(joint - logsumexp(joint, axis=1, keepdims=True))
 
 
 def climb(samples: Samples, responsibility: np.ndarray) -> Tuple[Mixture, List[float]]:
@@ -235,17 +229,14 @@ def climb(samples: Samples, responsibility: np.ndarray) -> Tuple[Mixture, List[f
 def _floored(log_table: np.ndarray) -> np.ndarray:
     """The distributions (C, V) mixed with a uniform one so that none of their values is below LOG_FLOOR."""
     least = np.exp(LOG_FLOOR)
-    result: np.ndarray = np.log(least + (1 - log_table.shape[1] * least) * np.exp(log_table))
-    return result
+    return np.log(least + (1 - log_table.shape[1] * least) * np.exp(log_table))
 
 
 def fit_context(start: Mixture, vectors: np.ndarray, scale: np.ndarray, previous: np.ndarray, following: np.ndarray,
                 classes: int) -> Mixture:
-    """Fits the context-aware mixture of one phoneme from `start`, its mixture without context.
-
-    `vectors` is (n, 14) in FAP and seconds, `scale` (14,) the corpus's standard deviations, `previous` and `following`
-    (n,) the viseme classes of the neighbours, `classes` their number V.
-    """
+    """Fits the context-aware mixture of one phoneme from `start`, its mixture without context. `vectors` is (n, 14) in
+    FAP and seconds, `scale` (14,) the corpus's standard deviations, `previous` and `following` (n,) the viseme classes
+    of the neighbours, `classes` their number V."""
     samples = Samples(vectors / scale, previous, following, classes)
     joint = np.log(start.weight) + log_normal(samples.vectors, start.mean / scale,
                                               start.covariance / scale[:, None] / scale[None, :])

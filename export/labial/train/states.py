@@ -139,11 +139,9 @@ def match_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequ
 
 
 def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Holds (C, Q, 3) precisions and (C, Q) anchors within DYNAMIC_RANGE, channel by channel.
-
-    A frame's diagonal element is static + anchor and at most delta / 2 + 6 delta-delta. Either part of a state is
-    scaled down where it exceeds half of DYNAMIC_RANGE times the channel's least static + anchor.
-    """
+    """Holds (C, Q, 3) precisions and (C, Q) anchors within DYNAMIC_RANGE, channel by channel. A frame's diagonal
+    element is static + anchor and at most delta / 2 + 6 delta-delta. Either part of a state is scaled down where it
+    exceeds half of DYNAMIC_RANGE times the channel's least static + anchor."""
     hold = precision[..., 0] + anchor
     moving = precision[..., 1] / 2 + 6 * precision[..., 2]
     most = DYNAMIC_RANGE / 2 * hold.min(axis=1, keepdims=True)
@@ -215,12 +213,10 @@ def chain_tables(chains: Sequence[Chain], stride: int) -> StateTables:
 
 def balance_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
                    human: Sequence[np.ndarray], weights: Sequence[np.ndarray], scales: Scales) -> StateTables:
-    """The tables with means, precisions and anchors estimated on decoded paths (T, 13) of targets and human motion
-    (T, 13) in FAP, whose values count by `weights` (T, 13). What the search sees stays as it is.
-
-    With m the mean of a state's human frames, y a human frame and x its target, the anchor has the share b of what
-    holds a frame that makes y - m - b (x - m) least in squares; the hold is the inverse of that remainder's variance.
-    """
+    """The tables with means, precisions and anchors estimated on decoded paths (T, 13) of targets and human motion (T,
+    13) in FAP, whose values count by `weights` (T, 13). What the search sees stays as it is. With m the mean of a
+    state's human frames, y a human frame and x its target, the anchor has the share b of what holds a frame that makes
+    y - m - b (x - m) least in squares; the hold is the inverse of that remainder's variance."""
     count, size = tables.emission_mean.shape
     mean, precision = np.empty((count, size, 3)), np.empty((count, size, 3))
     anchor = np.empty((count, size))
@@ -247,5 +243,4 @@ def _share(wanted: np.ndarray, given: np.ndarray, weight: np.ndarray, states: np
     overall = across.sum() / max(float(square.sum()), 1e-9)
     prior = PRIOR_FRAMES * max(float(square.sum() / weight.sum()), 1e-9)
     share = (np.bincount(states, across, size) + prior * overall) / (np.bincount(states, square, size) + prior)
-    factor: np.ndarray = np.minimum(np.maximum(share, LEAST_SHARE), 1.0 - LEAST_SHARE)
-    return factor
+    return np.minimum(np.maximum(share, LEAST_SHARE), 1.0 - LEAST_SHARE)

@@ -259,11 +259,9 @@ def _gain(plain: Model, material: List[Recording], about: Dict[str, np.ndarray])
 
 
 def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> Model:
-    """The model of the one talker of `corpus`, whose labels are phonemes of the model's kind.
-
-    `attribution` is added to the model's. Raises LabialError for a model that was not trained with talkers as random
-    effects, and for a corpus of several talkers.
-    """
+    """The model of the one talker of `corpus`, whose labels are phonemes of the model's kind. `attribution` is added to
+    the model's. Raises LabialError for a model that was not trained with talkers as random effects, and for a corpus of
+    several talkers."""
     about = _known(model)
     material = _material(model, corpus, about)
     order = np.argsort(code_of(model.pair_key[:, 0], model.pair_key[:, 1], model.pair_key[:, 2], len(model.phonemes)))

@@ -66,8 +66,7 @@ class Parameters:
     rate: np.ndarray
 
 
-def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np.ndarray
-            ) -> Tuple[np.ndarray, ...]:
+def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np.ndarray) -> Tuple[np.ndarray, ...]:
     """Shares of the segments (T, W), that sum to 1, and theta |distance|^p, (T, W)."""
     decay = np.exp(parameters.rate.ravel()[rate_at]) * power
     log = np.where(around.present, parameters.strength[around.phoneme] - decay, -np.inf)
@@ -76,8 +75,7 @@ def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np
 
 
 def _rate_index(around: Near, viseme_class: np.ndarray) -> np.ndarray:
-    result: np.ndarray = 2 * viseme_class[around.phoneme] + (around.distance > 0)
-    return result
+    return 2 * viseme_class[around.phoneme] + (around.distance > 0)
 
 
 def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
@@ -86,10 +84,8 @@ def _unpack(x: np.ndarray, phonemes: int) -> Parameters:
 
 def objective(around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class: np.ndarray, exponent: float,
               prior: float) -> Tuple[Callable[[np.ndarray], Tuple[float, np.ndarray]], np.ndarray]:
-    """The objective, which returns its value and gradient at a vector of parameters, and the starting point.
-
-    `wanted` (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin.
-    """
+    """The objective, which returns its value and gradient at a vector of parameters, and the starting point. `wanted`
+    (T,) is one channel's motion, `centre` (P,) the phonemes' means, where the targets begin."""
     power = np.abs(around.distance) ** exponent
     rate_at = _rate_index(around, viseme_class)
     phonemes, rates = len(centre), 2 * (int(viseme_class.max()) + 1)
@@ -153,8 +149,7 @@ def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray
     motion = np.concatenate([item.human for item in utterances])
     count = np.bincount(phoneme_at, minlength=phonemes)[:, None]
     total = np.stack([np.bincount(phoneme_at, column, phonemes) for column in motion.T], axis=1)
-    result: np.ndarray = (total + motion.mean(axis=0)) / (count + 1)
-    return result
+    return (total + motion.mean(axis=0)) / (count + 1)
 
 
 def _fit(utterances: Sequence[Utterance], training: Training, exponent: float, prior: float,

@@ -69,10 +69,8 @@ def _weighted(values: np.ndarray, index: np.ndarray, size: int) -> np.ndarray:
 
 def pool(keys: np.ndarray, state: np.ndarray, values: np.ndarray, states: int, strength: float,
          floor: np.ndarray) -> List[Level]:
-    """The levels of context from samples: `keys` (n, levels), `state` (n,), `values` (n, F).
-
-    Each level is drawn to the one before it as by `strength` samples; the first to the overall statistics.
-    """
+    """The levels of context from samples: `keys` (n, levels), `state` (n,), `values` (n, F). Each level is drawn to the
+    one before it as by `strength` samples; the first to the overall statistics."""
     width = values.shape[1]
     parent_mean = np.broadcast_to(values.mean(axis=0), (1, states, width))
     parent_variance = np.broadcast_to(values.var(axis=0), (1, states, width))
@@ -171,11 +169,9 @@ def even(frames: int, states: int) -> np.ndarray:
 
 
 def deal(frames: int, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(frames,) int64: a segment's frames distributed to states as mean + rho * variance, (S,) frames each.
-
-    rho makes the states fill the segment; a negative number of frames becomes 0. A segment with fewer frames than
-    states is divided evenly, as in training.
-    """
+    """(frames,) int64: a segment's frames distributed to states as mean + rho * variance, (S,) frames each. rho makes
+    the states fill the segment; a negative number of frames becomes 0. A segment with fewer frames than states is
+    divided evenly, as in training."""
     if frames < len(mean):
         return even(frames, len(mean))
     share = np.maximum(mean + (frames - mean.sum()) / variance.sum() * variance, 0.0)
@@ -184,24 +180,19 @@ def deal(frames: int, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
 
 
 def log_likelihoods(values: np.ndarray, row: np.ndarray, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(N, S) log N(value; state) without the constant, of N frames under the states of their own phoneme.
-
-    `values` (N, F), `row` (N,) the frames' rows of `mean` and `variance` (n, S, F).
-    """
+    """(N, S) log N(value; state) without the constant, of N frames under the states of their own phoneme. `values` (N,
+    F), `row` (N,) the frames' rows of `mean` and `variance` (n, S, F)."""
     result = -0.5 * np.log(variance).sum(axis=2)[row]
     for k in range(values.shape[1]):
         result -= 0.5 * (values[:, k, None] - mean[row, :, k]) ** 2 / variance[row, :, k]
-    found: np.ndarray = result
-    return found
+    return result
 
 
 def align(values: np.ndarray, row: np.ndarray, mean: np.ndarray, variance: np.ndarray,
           length: np.ndarray) -> np.ndarray:
-    """(N,) int64: the likeliest states of the frames of segments of `length` frames each, which sum to N.
-
-    A segment begins in the first state, ends in the last and skips none; one with fewer frames than states is divided
-    evenly. Ties stay in the state.
-    """
+    """(N,) int64: the likeliest states of the frames of segments of `length` frames each, which sum to N. A segment
+    begins in the first state, ends in the last and skips none; one with fewer frames than states is divided evenly.
+    Ties stay in the state."""
     states = mean.shape[1]
     score = log_likelihoods(values, row, mean, variance)
     start = np.cumsum(length) - length

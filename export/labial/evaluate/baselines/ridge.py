@@ -31,8 +31,7 @@ class Rows:
     def __matmul__(self, weights: np.ndarray) -> np.ndarray:
         """(T, 13) for weights (K1 + K2, 13)."""
         count = self.sparse.shape[1]
-        result: np.ndarray = self.sparse @ weights[:count] + self.dense @ weights[count:]
-        return result
+        return self.sparse @ weights[:count] + self.dense @ weights[count:]
 
 
 Design = Callable[[Timeline], Rows]
@@ -62,8 +61,7 @@ def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, si
 
 def solve(equations: Normal, penalty: np.ndarray) -> np.ndarray:
     """(K, 13) weights of least squared error plus penalty (K,) times their squares."""
-    result: np.ndarray = cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
-    return result
+    return cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
 
 
 @dataclass(frozen=True)
@@ -76,15 +74,12 @@ class Linear:
 
     def predict(self, timeline: Timeline) -> np.ndarray:
         """(T, 13)."""
-        result: np.ndarray = self.base + self.design(timeline) @ self.weights
-        return result
+        return self.base + self.design(timeline) @ self.weights
 
 
 def fit_ridge(training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]) -> Linear:
     """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
-
-    `make_design` computes the features of a part, since they may be trained, too.
-    """
+    `make_design` computes the features of a part, since they may be trained, too."""
     frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
     base = np.concatenate(frames).mean(axis=0)
 
@@ -155,12 +150,9 @@ def _design_of_neighbours(training: Training) -> Design:
         duration = np.log(np.clip(seconds, 0.02, 1.0) / 0.1)
         blocks: List[csr_matrix] = []
         for course in (np.ones_like(position), position - 0.5):
-            blocks += [
-                _onehot(timeline.phoneme_at, phonemes, course),
-                _onehot(timeline.phoneme_at, phonemes, course * duration),
-                _onehot(before, classes, course),
-                _onehot(after, classes, course),
-            ]
+            blocks += [_onehot(timeline.phoneme_at, phonemes, course),
+                       _onehot(timeline.phoneme_at, phonemes, course * duration), _onehot(before, classes, course),
+                       _onehot(after, classes, course)]
         return Rows(hstack(blocks).tocsr(), np.zeros((timeline.frames, 0)))
 
     return rows
@@ -207,8 +199,7 @@ def labels(label_at: np.ndarray, lag: np.ndarray, count: int, outside: int) -> c
 def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
     """(T, L * K) the stream (T, K) at every lag, held beyond its ends."""
     at = np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)
-    result: np.ndarray = stream[at].reshape(len(stream), -1)
-    return result
+    return stream[at].reshape(len(stream), -1)
 
 
 def _design_of_window(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> Design:
