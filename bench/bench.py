@@ -84,8 +84,7 @@ def _check(bench: Bench, path: Path, require_all: bool) -> bool:
               f"{len(bench.figures)} figures. If that is meant: python3 bench/bench.py --update")
     elif not passed_over:
         print("No figure is worse than bench/baseline.json.")
-    outdated = _outdated(bench.source, bench.figures)
-    return not worse and not outdated and not (require_all and passed_over)
+    return not _outdated(bench.source, bench.figures) and not worse and not (require_all and passed_over)
 
 
 def _outdated(source: Path, measured: List[Figure]) -> bool:

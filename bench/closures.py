@@ -75,8 +75,7 @@ def least_openings(frames: np.ndarray, spans: Sequence[Tuple[int, int]]) -> List
 
 def jaw(slew: Optional[int], acceleration: Optional[int]) -> Rig:
     """A jaw of 500 us with these limits."""
-    described = replace(JAW.outputs[0], slew=slew or 0.0, acceleration=acceleration or 0.0)
-    return replace(JAW, outputs=(described,))
+    return replace(JAW, outputs=(replace(JAW.outputs[0], slew=slew or 0.0, acceleration=acceleration or 0.0),))
 
 
 def measure(said: Sequence[Said], described: Rig, sight: int) -> Tuple[float, float]:

@@ -158,8 +158,7 @@ class Stage:
 
     def shapes(self, kind: str) -> Dict[str, str]:
         """The head's shape of each output of a rig; empty for a head of another kind."""
-        names = [output.name for output in face(kind).outputs]
-        found = shapes_for(self.head, kind, names)
+        found = shapes_for(self.head, kind, [output.name for output in face(kind).outputs])
         return found if len(found) >= {"arkit": 10, "oculus": 10, "vrm": 5}[kind] else {}
 
     def on(self, weights: Mapping[str, float], shapes: Mapping[str, str]) -> Dict[str, float]:

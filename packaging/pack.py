@@ -116,8 +116,7 @@ def _version(options: argparse.Namespace) -> None:
 
 
 def _notice(options: argparse.Namespace) -> None:
-    source = Source()
-    write_text(ROOT / "NOTICE", notices(source.headers()))
+    write_text(ROOT / "NOTICE", notices(Source().headers()))
     print(ROOT / "NOTICE")
 
 

@@ -73,8 +73,7 @@ def build(bench: Bench, board: Board) -> Dict[str, List[str]]:
 
 def printed(command: List[str]) -> Dict[str, int]:
     """The output of an image: lines of a name and a number."""
-    text = run(command).stdout.decode()
-    found = dict(re.findall(r"^(\w+) (\d+)$", text, re.MULTILINE))
+    found = dict(re.findall(r"^(\w+) (\d+)$", run(command).stdout.decode(), re.MULTILINE))
     return {name: int(number) for name, number in found.items()}
 
 

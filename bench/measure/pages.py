@@ -48,8 +48,7 @@ def count(value: float) -> str:
 
 def decimal(value: float, digits: int) -> str:
     """With so many digits behind the point, halves rounded up, as a reader of the source would: 6.3."""
-    exact = Decimal(repr(value)).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP)
-    return f"{exact:,f}"
+    return f"{Decimal(repr(value)).quantize(Decimal(1).scaleb(-digits), ROUND_HALF_UP):,f}"
 
 
 def share(value: float, digits: int = 2) -> str:

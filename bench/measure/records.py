@@ -154,8 +154,7 @@ def digest(root: Path, record: str = "") -> str:
 def _streams(frames: bytes) -> bytes:
     """The frames of STREAMS. A stream begins with its name; its lines have numbers, or "and" and how often the line
     before comes again."""
-    names = "|".join(STREAMS).encode()
-    return b"".join(re.findall(rb"^(?:%s)\n(?:[-\d].*\n|and .*\n)*" % names, frames, re.MULTILINE))
+    return b"".join(re.findall(rb"^(?:%s)\n(?:[-\d].*\n|and .*\n)*" % "|".join(STREAMS).encode(), frames, re.MULTILINE))
 
 
 def section_commands(text: str) -> Dict[str, List[str]]:

@@ -49,8 +49,7 @@ class CallGraph:
 
     def missing(self) -> Set[str]:
         """Called functions whose frame is unknown."""
-        called = set().union(*self.calls.values()) if self.calls else set()
-        return called - set(self.frames) - {_INDIRECT}
+        return (set().union(*self.calls.values()) if self.calls else set()) - set(self.frames) - {_INDIRECT}
 
     def deepest(self, function: str, above: Tuple[str, ...] = ()) -> Tuple[int, Tuple[str, ...]]:
         """Bytes that a call of `function` takes at most, and the chain of calls that takes them. RuntimeError for

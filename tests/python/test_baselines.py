@@ -67,7 +67,7 @@ def error(predictor, law, labels=LABELS) -> float:
     apart, size = [], []
     for item in unseen(law, labels=labels):
         mask = item.timeline.phoneme_at != 0
-        apart.append((predictor.predict(item.timeline) - item.human)[mask])
+        apart.append((predictor(item.timeline) - item.human)[mask])
         size.append(item.human[mask])
     return float(np.sqrt((np.concatenate(apart) ** 2).mean()) / np.concatenate(size).std())
 
@@ -75,7 +75,7 @@ def error(predictor, law, labels=LABELS) -> float:
 def test_mean_is_the_mean_outside_silence() -> None:
     part = training(held, noise=0.0)
     frames = np.concatenate([item.human[item.timeline.phoneme_at != 0] for item in part.utterances])
-    motion = ridge.fit_mean(part).predict(timeline([0, 1], [40, 40], 50))
+    motion = ridge.fit_mean(part)(timeline([0, 1], [40, 40], 50))
     np.testing.assert_allclose(motion, np.tile(frames.mean(0), (4, 1)))
 
 
@@ -97,7 +97,7 @@ def test_steps_of_the_paper_are_one_components_mean() -> None:
 def test_steps_hold_each_shape_for_its_phoneme_even_where_some_have_no_frame() -> None:
     fitted = steps.fit(training(held))
     given = timeline([SPEECH.phonemes.index(name) for name in ("SIL", "AA", "P", "S")], [100, 100, 4, 100], 50)
-    found = fitted.predict(given)
+    found = fitted(given)
     assert found.shape == (15, 13) and len(np.unique(found[:, 0])) == 3
 
 
@@ -213,5 +213,5 @@ def test_unseen_phonemes_short_segments_and_single_frames(fit) -> None:
     fitted = fit(training(held, 12))
     numbers = [SPEECH.phonemes.index(name) for name in ("SIL", "OY", "ZH", "B", "P", "OY")]
     for given in (timeline(numbers, [200, 15, 3, 3, 300, 20], 50), timeline(numbers[1:2], [20], 50)):
-        found = fitted.predict(given)
+        found = fitted(given)
         assert found.shape == (given.frames, 13) and np.isfinite(found).all()

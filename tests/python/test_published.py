@@ -360,7 +360,7 @@ def test_the_first_row_is_the_published_method(corpus, training) -> None:
     given = [item.timeline for item in utterances(corpus[11:], SPEECH, 50)]
     motion = choices._motion(CHOICES["speech"][0], training, given)
     for frames, item in zip(motion, given):
-        np.testing.assert_array_equal(frames, methods.fit_paper(training).predict(item))
+        np.testing.assert_array_equal(frames, methods.reference(training.model("paper"))(item))
 
 
 @pytest.mark.slow

@@ -105,8 +105,7 @@ def read_track(source: Source) -> Motion:
     from labial.tables.quantise import quantise
 
     model, _, phonemes = read_phonemes(source)
-    seconds = sum(milliseconds for _, milliseconds in phonemes) / 1000.0
-    _check_length(source.path, seconds)
+    _check_length(source.path, sum(milliseconds for _, milliseconds in phonemes) / 1000.0)
     if synthesis.is_published(model):
         frames = synthesis.synthesise(model, phonemes)
     else:  # on the integer tables, so that choices at near ties are those of a board

@@ -239,8 +239,7 @@ def _pieces(episode: Episode) -> np.ndarray:
     asked -= asked.mean()
     later = np.lib.stride_tricks.sliding_window_view(np.pad(opening, count), 2 * count + 1)  # (T, lags)
     products = asked[:, None] * later
-    starts = np.arange(0, len(times), round(_PIECE / _STEP))
-    return np.asarray(np.add.reduceat(products, starts, axis=0))
+    return np.asarray(np.add.reduceat(products, np.arange(0, len(times), round(_PIECE / _STEP)), axis=0))
 
 
 def _peak(sums: np.ndarray) -> float:

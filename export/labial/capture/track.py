@@ -124,8 +124,7 @@ def _scores(points: np.ndarray, seen: List[Faces]) -> np.ndarray:
 
 
 def _summary(output: PathLike, times: np.ndarray, there: np.ndarray) -> str:
-    rate = 1.0 / float(np.median(np.diff(times)))
-    text = f"{os.fspath(output)}: {len(times)} frames, {rate:.4g} a second"
+    text = f"{os.fspath(output)}: {len(times)} frames, {1.0 / float(np.median(np.diff(times))):.4g} a second"
     if there.all():
         return text
     return f"{text}; {int((~there).sum())} without the face, from {spans_told(times, ~there, 6)}"

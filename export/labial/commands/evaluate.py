@@ -157,8 +157,7 @@ def _by_timings(options: argparse.Namespace) -> str:
         from labial.evaluate import hearing, others
     from labial.hearing.model import load
 
-    model = load(options.model)
-    own = hearing.methods(model)
+    own = hearing.methods(load(options.model))
     names = _chosen(options.methods, "--methods", list(own), list(others.PACKAGES))
     chosen = {name: own[name] if name in own else others.method(name, options.npm) for name in names}
     conditions = _chosen(options.conditions, "--conditions", list(hearing.CONDITIONS))

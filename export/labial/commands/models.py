@@ -122,8 +122,7 @@ def run_export(options: argparse.Namespace) -> int:
     if is_tables(options.model):
         return _export_words(options)
     model, tables = exported(options, options.name)
-    streams = drawn_streams(model)
-    measured = loss.measure(model, tables, streams)
+    measured = loss.measure(model, tables, drawn_streams(model))
     for path in emit.write(tables, options.output, binary=options.blob):
         print(path)
     print(loss.memory(tables))

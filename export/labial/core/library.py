@@ -26,7 +26,7 @@ from ctypes import (
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Dict, Optional
+from typing import Any, Dict
 
 from labial import __version__
 from labial.errors import LabialError, StreamError, pip
@@ -116,14 +116,12 @@ def library_path() -> Path:
 
 def method() -> str:
     """The method that the library is built for: "labial", or "paper" for the published one to the letter."""
-    text: bytes = library().method()
-    return text.decode("ascii")
+    return library().method().decode("ascii")
 
 
 def sentence(result: int) -> str:
     """The library's description of a result."""
-    text: Optional[bytes] = library().result_text(result)
-    return (text or b"").decode("utf-8")
+    return (library().result_text(result) or b"").decode("utf-8")
 
 
 def failure(result: int, what: str = "") -> StreamError:

@@ -46,8 +46,7 @@ def names() -> Tuple[str, ...]:
 
 def suffix(name: str) -> str:
     """How the names of files of a format end, in small letters; empty where that does not tell it."""
-    found: bytes = library().timings_suffix(names().index(name))
-    return found.decode("ascii")
+    return library().timings_suffix(names().index(name)).decode("ascii")
 
 
 def timings(text: bytes, form: str = "auto", tier: Optional[str] = None, number: int = 0) -> Iterator[Timing]:

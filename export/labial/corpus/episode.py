@@ -96,8 +96,7 @@ def _even(item: Episode) -> Episode:
     frames, left_out = item.frames.copy(), item.source.left_out
     for left, right in SIDES:
         own = [side for side in (left, right) if side not in left_out] or [left, right]
-        mean: np.ndarray = frames[:, own].mean(axis=1)
-        frames[:, left] = frames[:, right] = mean
+        frames[:, left] = frames[:, right] = frames[:, own].mean(axis=1)
         if len(own) == 1:
             left_out = left_out - {left, right}
     return replace(item, frames=frames, source=replace(item.source, left_out=left_out))

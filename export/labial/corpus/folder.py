@@ -61,8 +61,7 @@ def check_range(path: PathLike, line: int, time: float, values: Sequence[float],
 def read_episode(frames: PathLike, timings: PathLike, phone_set: PhoneSet) -> Episode:
     """Reads one episode, named after the frames file. Raises DataError also when the two files' times differ."""
     times, values = read_frames(frames)
-    segments = phoneme_segments(timings, read_timings(timings), phone_set)
-    episode = Episode(Path(frames).stem, times, values, segments)
+    episode = Episode(Path(frames).stem, times, values, phoneme_segments(timings, read_timings(timings), phone_set))
     check_unit(frames, times)
     check_span(timings, episode)
     return episode

@@ -101,8 +101,7 @@ def generate(out_dir: PathLike, episodes: int = EPISODES, seed: int = 0) -> None
     with folder(path) as made:
         for number in range(episodes):
             phonemes, intensity = _bout(random)
-            frames = _motion(random, phonemes, intensity)
-            _write(made / f"laugh{number:04d}.csv", _csv(frames))
+            _write(made / f"laugh{number:04d}.csv", _csv(_motion(random, phonemes, intensity)))
             _write(made / f"laugh{number:04d}.lab", _lab(random, phonemes))
         _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
 
@@ -267,8 +266,7 @@ def _lab(random: np.random.Generator, phonemes: List[_Phoneme]) -> str:
     """Timings with apexes: the envelope's maximum lies at about two fifths of a phoneme."""
     lines, begin = [], 0
     for label, milliseconds, _ in phonemes:
-        place = float(np.clip(random.normal(0.42, 0.08), 0.1, 0.9))
-        apex = begin + round(place * milliseconds)
+        apex = begin + round(float(np.clip(random.normal(0.42, 0.08), 0.1, 0.9)) * milliseconds)
         lines.append(f"{begin / 1000:.3f} {(begin + milliseconds) / 1000:.3f} {label} {apex / 1000:.3f}")
         begin += milliseconds
     return "\n".join(lines) + "\n"

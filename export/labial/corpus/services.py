@@ -208,8 +208,7 @@ class _Tell:
 
     def listed(self, item: Entry) -> bool:
         """Whether there is a list of items, which may be empty."""
-        steps = [(name, 0, exact) for name, _, exact in self.places[0]]
-        return is_list(_descended(item, steps))
+        return is_list(_descended(item, [(name, 0, exact) for name, _, exact in self.places[0]]))
 
     def _within(self, item: Entry, path: Sequence[Tuple[str, int, bool]], odd: Odd) -> List[Entry]:
         """The objects at the end of a path."""

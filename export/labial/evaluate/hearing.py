@@ -239,8 +239,7 @@ def _row(sounds: str, condition: str, method: str, rows: Sequence[Judged]) -> Ro
 
 def _without(lag: int, true: np.ndarray, heard: np.ndarray, classes: np.ndarray) -> Judged:
     """Frames with the delay of the heard ones taken out; the last, or first, one is held."""
-    at = np.clip(np.arange(len(heard)) + lag, 0, max(len(heard) - 1, 0))
-    return true, heard[at], classes
+    return true, heard[np.clip(np.arange(len(heard)) + lag, 0, max(len(heard) - 1, 0))], classes
 
 
 COLUMNS = ("sounds", "condition", "method", "opening", "in speech", "10th percentile", "channels", "p, b, m closed",

@@ -3,8 +3,7 @@ and Labial in the C library."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Callable, List, Sequence, Tuple
+from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -18,50 +17,17 @@ from labial.tables.model import Model
 from labial.tables.quantise import ExportedModel, quantise
 
 
-@dataclass(frozen=True)
-class Float:
+def reference(model: Model) -> Predictor:
     """A model in the float64 reference of its method."""
-
-    model: Model
-
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13)."""
-        return synthesise(self.model, timeline.stream)
+    return lambda timeline: synthesise(model, timeline.stream)
 
 
-@dataclass(frozen=True)
-class Device:
+def device(exported: ExportedModel) -> Predictor:
     """A model's exported tables in the integer C library."""
-
-    exported: ExportedModel
-
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13)."""
-        return device_frames(self.exported, [timeline.stream])[0].astype(np.float64)
+    return lambda timeline: device_frames(exported, [timeline.stream])[0].astype(np.float64)
 
 
-def fit_paper(training: Training) -> Float:
-    """The published method, unit by unit."""
-    return Float(training.model("paper"))
-
-
-def fit_paper_normalised(training: Training) -> Float:
-    """The published method with features normalised before clustering."""
-    return Float(training.model("paper", normalise=True))
-
-
-def fit_labial(training: Training) -> Float:
-    """Labial, in floating point."""
-    return Float(training.model("labial"))
-
-
-def fit_device(training: Training) -> Device:
-    """Labial, as it runs on the device."""
-    return Device(quantise(training.model("labial"), "evaluated_model"))
-
-
-@dataclass(frozen=True)
-class Method:
+class Method(NamedTuple):
     """A method that can be fitted; `title` is what tables call it."""
 
     name: str
@@ -78,10 +44,11 @@ METHODS: Tuple[Method, ...] = (
     Method("ridge_phonemes", "ridge, phoneme window", ridge.fit_phonemes),
     Method("ridge_classes", "ridge, class window + shapes", ridge.fit_classes),
     Method("hmm_synthesis", "HMM synthesis", hmm.fit),
-    Method("paper", "paper", fit_paper),
-    Method("paper_normalised", "paper, normalised features", fit_paper_normalised),
-    Method("labial", "Labial, float64", fit_labial),
-    Method("device", "Labial, device", fit_device),
+    Method("paper", "paper", lambda part: reference(part.model("paper"))),
+    Method("paper_normalised", "paper, normalised features",
+           lambda part: reference(part.model("paper", normalise=True))),
+    Method("labial", "Labial, float64", lambda part: reference(part.model("labial"))),
+    Method("device", "Labial, device", lambda part: device(quantise(part.model("labial"), "evaluated_model"))),
 )
 
 
@@ -97,7 +64,7 @@ def select(names: str) -> List[Method]:
 
 def predict_all(predictor: Predictor, timelines: Sequence[Timeline]) -> List[np.ndarray]:
     """(T, 13) of every timeline. Raises LabialError for invalid motion."""
-    motion = [predictor.predict(item) for item in timelines]
+    motion = [predictor(item) for item in timelines]
     for frames, item in zip(motion, timelines):
         if len(frames) != item.frames or not np.isfinite(frames).all():
             raise LabialError(f"a method made {len(frames)} frames of {item.frames}, or such as are not finite")

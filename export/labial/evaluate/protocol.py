@@ -183,7 +183,7 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
     example = None
     if split.number == 0:
         item = test[shown]
-        held = steps.fit(training).predict(item.timeline)
+        held = steps.fit(training)(item.timeline)
         example = Example(options.kind, judged[shown][0], item, _stretch(item, phone_set, split), held, motion)
     return Outcome(split, judge.frames, measures, seconds, example)
 

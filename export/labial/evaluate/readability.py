@@ -125,8 +125,7 @@ class _Test:
         words = np.array([item.word for item in self.tokens])
         if not with_residual:
             return self.reader.read(seen) == words
-        noisy = [self.reader.read(seen + self.reader.residual[rows]) == words for rows in self.borrowed]
-        return np.concatenate(noisy)
+        return np.concatenate([self.reader.read(seen + self.reader.residual[rows]) == words for rows in self.borrowed])
 
 
 class LipReader:

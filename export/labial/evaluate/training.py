@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Callable, Dict, List, Optional, Protocol, Sequence, Set, Tuple, TypeVar
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple, TypeVar
 
 import numpy as np
 
@@ -29,11 +29,8 @@ COMMON_SHARE = 0.15
 Setting = TypeVar("Setting")
 
 
-class Predictor(Protocol):
-    """A fitted method."""
-
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13) FAP for an utterance of T frames."""
+#: A fitted method: (T, 13) FAP for the timeline of T frames.
+Predictor = Callable[[Timeline], np.ndarray]
 
 
 class Training:
@@ -140,9 +137,8 @@ def _spoken_words(item: Utterance, silence: int) -> Set[str]:
     return {word for word, phoneme in spoken if word is not None and phoneme != silence}
 
 
-def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.ndarray]) -> float:
-    """Mean diff over the four labial parameters, the figure that methods are judged by, on a fold's held-out frames.
-    `predict` takes a timeline and returns (T, 13) FAP."""
+def validation_error(scale: Scale, fold: Fold, predict: Predictor) -> float:
+    """Mean diff over the four labial parameters, the figure that methods are judged by, on a fold's held-out frames."""
     masks = judged_frames(fold.held_out, fold.training.phone_set, fold.words)
     human = np.concatenate([item.human[mask] for item, mask in zip(fold.held_out, masks)])
     motion = np.concatenate([predict(item.timeline)[mask] for item, mask in zip(fold.held_out, masks)])
@@ -150,7 +146,7 @@ def validation_error(scale: Scale, fold: Fold, predict: Callable[[Timeline], np.
 
 
 def choose(training: Training, settings: Sequence[Setting],
-           prepare: Callable[[Training], Callable[[Setting], Callable[[Timeline], np.ndarray]]]) -> Setting:
+           prepare: Callable[[Training], Callable[[Setting], Predictor]]) -> Setting:
     """The setting of least error over the folds of inner validation, the first of equals. `prepare` takes the part to
     fit on and returns what makes a prediction function of a setting."""
     error = np.zeros(len(settings))

@@ -182,8 +182,7 @@ class Gltf:
         begin = (view.get("byteOffset") or 0) + offset
         if begin < 0 or stride < size or (count and begin + (count - 1) * stride + size > len(data)):
             raise ValueError(f"buffer view {number} goes beyond its buffer")
-        raw = np.frombuffer(data, np.uint8)
-        rows = np.lib.stride_tricks.as_strided(raw[begin:], (count, size), (stride, 1))
+        rows = np.lib.stride_tricks.as_strided(np.frombuffer(data, np.uint8)[begin:], (count, size), (stride, 1))
         return np.ascontiguousarray(rows).view(item).reshape(count, width)
 
     def _buffer(self, number: int) -> bytes:

@@ -130,8 +130,7 @@ def reverberated(sound: np.ndarray, decay: float, dry: float, random: np.random.
     tail /= np.sqrt(np.sum(np.square(tail))) * dry
     tail[0] = 1.0
     size = 1 << (len(sound) + count - 1).bit_length()
-    mixed = np.fft.irfft(np.fft.rfft(sound, size) * np.fft.rfft(tail, size), size)
-    return mixed[: len(sound)].astype(np.float32)
+    return np.fft.irfft(np.fft.rfft(sound, size) * np.fft.rfft(tail, size), size)[: len(sound)].astype(np.float32)
 
 
 def limited(sound: np.ndarray, low: float, high: float) -> np.ndarray:
@@ -229,8 +228,7 @@ def warped(energies: np.ndarray, factor: np.ndarray) -> np.ndarray:
 def noises(count: int, length: int, pool: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """(count, length, 24) noises of several colours, from a pool of :func:`white`: white to twice as steep as pink,
     with random bands; some are hum alone, some swell."""
-    starts = random.integers(len(pool) - length, size=count)
-    found = pool[starts[:, None] + np.arange(length)]
+    found = pool[random.integers(len(pool) - length, size=count)[:, None] + np.arange(length)]
     slope = random.choice([0.0, 1.0], size=count, p=[0.4, 0.6]) * random.uniform(0.0, 2.0, size=count)
     colour = -slope[:, None] * _OCTAVES + random.normal(scale=0.5, size=(count, BANDS))
     hums = random.random(count) < 0.08

@@ -61,14 +61,12 @@ def places() -> np.ndarray:
     """(129,) where each bin lies between the bands' edges: 0 is the lower end of band 0, 1 its peak, 2 its upper end
     and the peak of band 1."""
     ends = mel(np.array([LOWEST, HIGHEST]))
-    bins = np.arange(WINDOW // 2 + 1) * (RATE / WINDOW)
-    return (mel(bins) - ends[0]) / (ends[1] - ends[0]) * (BANDS + 1)
+    return (mel(np.arange(WINDOW // 2 + 1) * (RATE / WINDOW)) - ends[0]) / (ends[1] - ends[0]) * (BANDS + 1)
 
 
 def triangles() -> np.ndarray:
     """(129, 24) the share of each bin's energy in each band."""
-    distance = np.abs(places()[:, None] - np.arange(1, BANDS + 1))
-    return np.maximum(1.0 - distance, 0.0)
+    return np.maximum(1.0 - np.abs(places()[:, None] - np.arange(1, BANDS + 1)), 0.0)
 
 
 def window() -> np.ndarray:
@@ -142,8 +140,7 @@ def normalise_crops(energies: np.ndarray) -> np.ndarray:
 
 def relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
     """Features of log2 energies (..., n, 24) at levels (..., n)."""
-    relative = np.clip(energies - level[..., None], *RANGE)
-    return ((relative + OFFSET) / SCALE).astype(np.float32)
+    return ((np.clip(energies - level[..., None], *RANGE) + OFFSET) / SCALE).astype(np.float32)
 
 
 def features(sound: np.ndarray) -> np.ndarray:

@@ -152,8 +152,7 @@ def log_energies(sound: np.ndarray) -> np.ndarray:
     sine = sine_table()
     window = (32768 - sine[(np.arange(WINDOW) + 64) & 255]) >> 1
     centred = x - middle[:, None]
-    scaled = np.where(up[:, None] >= 0, centred << np.maximum(up, 0)[:, None], centred >> 1)
-    shaped = (scaled * window + 16384) >> 15
+    shaped = (np.where(up[:, None] >= 0, centred << np.maximum(up, 0)[:, None], centred >> 1) * window + 16384) >> 15
     re, im = _transform(shaped[:, 0::2], shaped[:, 1::2])
     acc = np.zeros((count, BANDS + 2), dtype=np.int64)
     place = place_table()
@@ -266,8 +265,7 @@ def hear_energies(tables: HearingTables, energies: np.ndarray, count: int) -> He
     and smoothing waits for; in digital silence and before the first voice they are at rest, as in a stream."""
     silent = energies.sum(axis=1) <= (FLOOR + 0.5) * LOG * BANDS
     told = _of_energies(tables, energies, silent, count, BEGIN)
-    pose = _resting(told.pose, told.still, tables.ahead + SMOOTHING)
-    return told.heard._replace(faps=(pose + 8) >> 4)
+    return told.heard._replace(faps=(_resting(told.pose, told.still, tables.ahead + SMOOTHING) + 8) >> 4)
 
 
 def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -> _Told:
@@ -280,8 +278,7 @@ def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -
 
 def _of_energies(tables: HearingTables, energies: np.ndarray, silent: np.ndarray, count: int, begin: int) -> _Told:
     known, level = count + SMOOTHING, levels(energies, silent, begin)
-    features = normalise(energies, level.hops).reshape(len(energies) // HOPS, HOPS * BANDS)
-    head = heads(tables, features)[:known]
+    head = heads(tables, normalise(energies, level.hops).reshape(len(energies) // HOPS, HOPS * BANDS))[:known]
     pose = poses(tables, head)
     before = np.concatenate([pose[:1], pose])[:count]
     smooth = (before + 2 * pose[:count] + pose[1:known] + 2) >> 2
@@ -317,8 +314,7 @@ def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: 
     told = _of_sound(tables, sound, rate, begin)
     count, frames = len(told.pose), len(_delivered(tables, told, exact))
     place = {name: k for k, name in enumerate(VISEMES)}
-    classes = [place[VISEME_OF[name]] if name in VISEME_OF else -1 for name in tables.classes]
-    leaders = np.array(classes)[told.leaders]
+    leaders = np.array([place[VISEME_OF[name]] if name in VISEME_OF else -1 for name in tables.classes])[told.leaders]
     parts = np.zeros((count, len(VISEMES)), dtype=np.int64)
     for part, there in ((1, np.concatenate([leaders[:1], leaders])[:count]), (2, leaders[:count]), (1, leaders[1:])):
         known = there >= 0

@@ -132,8 +132,7 @@ def delay(clips: Sequence[Judged], most: int = 6) -> int:
     def shifted(true: np.ndarray, heard: np.ndarray, lag: int) -> float:
         count = len(true) - abs(lag)
         one = opening(true)[max(-lag, 0) :][:count]
-        other = opening(heard)[max(lag, 0) :][:count]
-        return float(correlation(one[:, None], other[:, None])[0])
+        return float(correlation(one[:, None], opening(heard)[max(lag, 0) :][:count][:, None])[0])
 
     means = []
     for lag in range(-most, most + 1):

@@ -175,8 +175,7 @@ def save(model: HearingModel, path: Union[PathLike, BinaryIO]) -> None:
 def is_hearing(path: PathLike) -> bool:
     """Whether a file says that it holds a model of hearing; false for all other files, also those that are missing."""
     try:
-        members = read_zip(path, ["model.json"], limits.HEARING)
-        text = json.loads(members["model.json"].decode("utf-8"))
+        text = json.loads(read_zip(path, ["model.json"], limits.HEARING)["model.json"].decode("utf-8"))
     except (OSError, ArrayError, KeyError, ValueError, RecursionError):
         return False
     return isinstance(text, dict) and text.get("kind") == KIND

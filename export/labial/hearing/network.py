@@ -73,13 +73,11 @@ def hear(model: HearingModel, sound: np.ndarray) -> Heard:
     frames as the network looks ahead and smoothing waits for."""
     sound = np.asarray(sound)
     count, ahead = frames_of(len(sound)), model.plan.ahead + SMOOTHING
-    padded = extended(sound, 0, (count + ahead) * FRAME - len(sound))
-    return hear_energies(model, log_energies(padded), count)
+    return hear_energies(model, log_energies(extended(sound, 0, (count + ahead) * FRAME - len(sound))), count)
 
 
 def hear_energies(model: HearingModel, energies: np.ndarray, count: int) -> Heard:
     """The same for the first `count` frames of log energies (n, 24), which reach as far as the network looks ahead and
     smoothing waits for."""
-    features = normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)
-    result = closed(model, run(model, features))
+    result = closed(model, run(model, normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)))
     return Heard(result.scores[:count], result.closed[:count], smoothed(result.faps[: count + SMOOTHING])[:count])

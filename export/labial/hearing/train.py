@@ -366,16 +366,14 @@ def finished(state: _State, data: _Data, folders: Sequence[Prepared], options: O
         return with_even_sides(
             model_of(state.learner, data.mean, data.scale, targets.closure(), edges, options.attribution, about))
 
-    shares = data.shares[: len(folders)]
-    choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], shares)
+    choice = choose(made((-1.0, 1.0)), [item.part(held=True) for item in folders], data.shares[: len(folders)])
     about["held_out"] = choice.figures()
     return made(choice.edges), choice
 
 
 def _rate(step: int, steps: int) -> float:
     """The learning rate relative to its highest: it rises at the beginning and falls along a cosine."""
-    part = step / steps
-    return min(1.0, (step + 1) / _WARM) * 0.5 * (1 + float(np.cos(np.pi * part))) + _LEAST
+    return min(1.0, (step + 1) / _WARM) * 0.5 * (1 + float(np.cos(np.pi * (step / steps)))) + _LEAST
 
 
 def _step(state: _State, data: _Data, pool: np.ndarray, options: Options) -> np.ndarray:

@@ -186,8 +186,7 @@ def _solve_pentadiagonal(diagonal: np.ndarray, first: np.ndarray, second: np.nda
 
 def join(pieces: Sequence[Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
     """(T, 13): the pieces' trajectories in sequence, cross-faded linearly where two share frames."""
-    total = pieces[-1].end if pieces else 0
-    result = np.zeros((total, trajectories[0].shape[1] if trajectories else 0))
+    result = np.zeros((pieces[-1].end if pieces else 0, trajectories[0].shape[1] if trajectories else 0))
     for piece, motion in zip(pieces, trajectories):
         fade = piece.fade_in
         share = (np.arange(1, fade + 1) / (fade + 1))[:, None]

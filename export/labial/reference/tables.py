@@ -88,8 +88,7 @@ class FloatTables:
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """(T, C) targets before floors: `shapes` (T, C) plus the kernels of `neighbours` (T, L), phonemes."""
-        taps = np.arange(neighbours.shape[1])
-        return shapes + self._kernel[neighbours, taps].sum(axis=1)
+        return shapes + self._kernel[neighbours, np.arange(neighbours.shape[1])].sum(axis=1)
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
                searched: int = SEARCHED) -> np.ndarray:

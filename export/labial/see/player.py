@@ -48,8 +48,7 @@ def framed(page: str) -> str:
 
 def script_data(data: Dict[str, Any], audio: Optional[PathLike]) -> str:
     """The data and the sound, if one is given, as JSON that may stand in a script element. Raises as `sound` does."""
-    whole = data if audio is None else {**data, "audio": sound(audio)}
-    text = json.dumps(whole, separators=(",", ":"))
+    text = json.dumps(data if audio is None else {**data, "audio": sound(audio)}, separators=(",", ":"))
     # Within a script element `</` and `<!--` have a meaning, so that no such character may stand there as it is.
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")

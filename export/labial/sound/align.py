@@ -304,8 +304,7 @@ def _followed(path: PathLike, sound: Sound, phrases: Sequence[Sequence[str]], re
             count, found = _heard_of(part, words[at:], recogniser)
         piece = sound.piece(start, end, found)
         if (found is None and not sound.silent(start, end)) or piece.doubtful:
-            most = at + int(_FASTEST * (end - start)) + 1
-            loose = recogniser.loosely(part, _between(phrases, at, most))
+            loose = recogniser.loosely(part, _between(phrases, at, at + int(_FASTEST * (end - start)) + 1))
             other = sound.piece(start, end, loose[0]) if loose is not None else piece
             if loose is not None and (found is None or other.confidence > piece.confidence):
                 piece, count, found = other, loose[1], loose[0]
@@ -343,8 +342,7 @@ def _heard_of(samples: np.ndarray, words: Sequence[str], recogniser: Recogniser)
 def _next_piece(sound: Sound, start: float, words: Sequence[str], recogniser: Recogniser) -> Tuple[float, int]:
     """Where the next piece ends, and how many of `words` are in it."""
     end = sound.cut(start, LONGEST_PIECE)
-    most = int(_FASTEST * (end - start)) + 1
-    rows = recogniser.follow_part(sound.part(start, end), words[:most])
+    rows = recogniser.follow_part(sound.part(start, end), words[: int(_FASTEST * (end - start)) + 1])
     count, best, pause = 0, (end, 0), 0.0
     for word, begin, stop in rows:
         if word.startswith(("<", "[")):

@@ -149,8 +149,7 @@ def _packed(name: str, phoneme: int, sets: Sequence[str]) -> str:
 
 def names_bytes(model: ExportedModel) -> int:
     """Flash bytes of the names on a 32-bit target."""
-    labels = sum(4 + len(label.encode()) + 1 for label in model.phonemes)
-    return _entries_bytes(model) + labels + 12
+    return _entries_bytes(model) + sum(4 + len(label.encode()) + 1 for label in model.phonemes) + 12
 
 
 def _entries_bytes(model: ExportedModel) -> int:

@@ -39,8 +39,7 @@ def weight_code(value: np.ndarray) -> np.ndarray:
     """uint8: the codes whose weights are nearest to the values, which must not be negative."""
     value = np.asarray(value, dtype=np.float64)
     above = np.clip(np.searchsorted(WEIGHTS, value), 1, 255)
-    nearer_below = value - WEIGHTS[above - 1] <= WEIGHTS[above] - value
-    return np.where(nearer_below, above - 1, above).astype(np.uint8)
+    return np.where(value - WEIGHTS[above - 1] <= WEIGHTS[above] - value, above - 1, above).astype(np.uint8)
 
 
 def weight_code_below(value: np.ndarray) -> np.ndarray:

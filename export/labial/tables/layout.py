@@ -97,8 +97,7 @@ def _contexts(model: ExportedModel) -> Optional[np.ndarray]:
 def _kernel_words(kernels: np.ndarray) -> np.ndarray:
     """(P L W, 1) words of kernels (P, L, C), four channels to a word, each 128 more; zeros fill the last."""
     check_fits("kernels", "b", kernels.reshape(-1))
-    filled = np.pad(kernels, [(0, 0), (0, 0), (0, -kernels.shape[-1] % 4)])
-    biased = filled.reshape(-1, 4) + 128
+    biased = np.pad(kernels, [(0, 0), (0, 0), (0, -kernels.shape[-1] % 4)]).reshape(-1, 4) + 128
     return (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
 
 

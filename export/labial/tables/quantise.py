@@ -248,8 +248,7 @@ def _steps(values: np.ndarray, largest: int, what: str) -> Tuple[np.ndarray, np.
         at = ", ".join(map(str, np.unravel_index(int(np.abs(values).argmax()), values.shape)))
         raise ModelError(f"{what}[{at}] reaches {extent.max():.0f} FAP units, which is more than the tables hold")
     scale = scale.astype(np.int64)
-    steps = np.rint(values * POSITION_SCALE * 256.0 / np.maximum(scale, 1)).astype(np.int64)
-    return np.clip(steps, -127, 127), scale
+    return np.clip(np.rint(values * POSITION_SCALE * 256.0 / np.maximum(scale, 1)).astype(np.int64), -127, 127), scale
 
 
 def _floors(model: Model, centre: np.ndarray, channels: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -357,8 +356,7 @@ def _motion(means: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Steps (13, Q, 2) of the means of delta and delta-delta, positions, and the sizes of a step, (13, 2)."""
     scale = np.ceil(np.abs(means).max(axis=1) * 256.0 / 127.0)
     scale = np.minimum(scale, POSITION_MAX * 256 // 127).astype(np.int64)
-    steps = np.rint(means * 256.0 / np.maximum(scale, 1)[:, None]).astype(np.int64)
-    return np.clip(steps, -127, 127), scale
+    return np.clip(np.rint(means * 256.0 / np.maximum(scale, 1)[:, None]).astype(np.int64), -127, 127), scale
 
 
 def scaled(motion: np.ndarray, scale: np.ndarray) -> np.ndarray:

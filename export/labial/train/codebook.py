@@ -176,8 +176,7 @@ def lbg(points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
     centres, cell, distortion = lloyd(points, points.mean(axis=0, keepdims=True))
     while len(centres) < size:
         count, mean, variance = _moments(points, cell, len(centres))
-        load = count * variance.sum(axis=1)
-        split = np.argsort(-load, kind="stable")[: min(len(centres), size - len(centres))]
+        split = np.argsort(-(count * variance.sum(axis=1)), kind="stable")[: min(len(centres), size - len(centres))]
         axis = variance[split].argmax(axis=1)
         step = np.zeros((len(split), points.shape[1]))
         step[np.arange(len(split)), axis] = SPLIT * np.sqrt(variance[split, axis])

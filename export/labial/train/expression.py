@@ -76,8 +76,7 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tupl
             firm = np.argsort(-contact.sum(axis=1), kind="stable")[: max(round(FIRMEST[name] * len(poses)), 1)]
             total = weight[firm].sum(axis=0)
             mean = (weight[firm] * contact[firm]).sum(axis=0) / np.maximum(total, 1e-9)
-            held = np.where(total > 0, mean, least[channels])
-            result[np.ix_(classes == number, channels)] = held
+            result[np.ix_(classes == number, channels)] = np.where(total > 0, mean, least[channels])
             contacts[np.ix_(classes == number, channels)] = total > 0
     if contacts.any():
         silence = phone_set.phonemes.index(phone_set.silence)
@@ -170,8 +169,7 @@ def shared_gains(model: Model, material: Sequence[Recording], workers: Workers,
     gain = np.ones(CHANNELS)
     for _ in range(3):  # states and floors reduce the effect of a gain, so that one step is not enough
         current = widened(model, gain, middle, contacts=False)
-        motion = workers.run("amplitude", motion_of, [(current, item) for item in items])
-        made = within(motion, learnt, names)
+        made = within(workers.run("amplitude", motion_of, [(current, item) for item in items]), learnt, names)
         total = np.zeros(CHANNELS)
         weight = np.zeros(CHANNELS)
         for talker, (of_human, amount) in human.items():
@@ -231,8 +229,7 @@ def table(corners: np.ndarray, protrusion: np.ndarray) -> Tuple[np.ndarray, np.n
     ends = np.percentile(corners, SPAN)
     smooth = IsotonicRegression(increasing=False, out_of_bounds="clip").fit(corners, protrusion)
     place = np.clip((corners - ends[0]) / (ends[1] - ends[0]), 0.0, 1.0) * (VALUES - 1)
-    nearest = np.abs(place[:, None] - np.arange(VALUES))
-    share = np.maximum(1.0 - nearest, 0.0)  # of each value in the interpolation
+    share = np.maximum(1.0 - np.abs(place[:, None] - np.arange(VALUES)), 0.0)  # of each value in the interpolation
     count = share.sum(axis=0)
     prior = smooth.predict(np.linspace(ends[0], ends[1], VALUES))  # of values that next to nothing tells
     values = np.linalg.solve(share.T @ share + np.eye(VALUES), share.T @ smooth.predict(corners) + prior)

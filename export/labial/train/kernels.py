@@ -191,8 +191,7 @@ class _Sums:
         their utterances, from 0 on."""
         weighted = (diags(weight) @ design).tocsr()
         # The previous sum precedes the frames, as rows whose product is that sum.
-        one = identity(design.shape[1], format="csr")
-        before = vstack([one, weighted]).tocsr()
+        before = vstack([identity(design.shape[1], format="csr"), weighted]).tocsr()
         self._normal = before.T @ vstack([self._normal.tocsr(), design]).tocsr()
         self._right = before.T @ np.concatenate([self._right, motion])
         sums = csr_matrix((np.ones(len(weight)), (utterance, np.arange(len(weight)))))

@@ -260,8 +260,7 @@ def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
         counts = item.weights[of]
         total = np.concatenate([total, item.frames[of] * counts]).sum(axis=0, keepdims=True)
         weight = np.concatenate([weight, counts]).sum(axis=0, keepdims=True)
-    pose = total[0] / weight[0]
-    return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(pose, 3).tolist()}
+    return {"channel_range": np.round(reach, 3).tolist(), "mean_pose": np.round(total[0] / weight[0], 3).tolist()}
 
 
 def _deviation(material: Sequence[Recording], silence: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any, Callable, List, Sequence, Tuple
+from typing import Callable, List, Sequence, Tuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -131,8 +131,8 @@ class Dominance:
     exponent: float
     fps: int
 
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13)."""
+    def __call__(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) FAP."""
         around = near(timeline, self.fps)
         power = np.abs(around.distance) ** self.exponent
         rate_at = _rate_index(around, self.viseme_class)
@@ -170,10 +170,6 @@ def _fit(utterances: Sequence[Utterance], training: Training, exponent: float, p
 
 def fit(training: Training) -> Dominance:
     """Chooses exponent and priors on the inner validation part, then fits all channels on the whole."""
-
-    def prepare(part: Training) -> Callable[..., Any]:
-        few = part.utterances[:TUNING_UTTERANCES]
-        return lambda setting: _fit(few, training, setting[0], setting[1], TUNING_CHANNELS).predict
-
-    exponent, prior = choose(training, list(itertools.product(EXPONENTS, PRIORS)), prepare)
+    exponent, prior = choose(training, list(itertools.product(EXPONENTS, PRIORS)), lambda part: lambda setting: _fit(
+        part.utterances[:TUNING_UTTERANCES], training, *setting, TUNING_CHANNELS))
     return _fit(training.utterances, training, exponent, prior, range(CHANNELS))

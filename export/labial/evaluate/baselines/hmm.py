@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
@@ -114,8 +114,8 @@ class Synthesis:
     phone_set: PhoneSet
     silence: int
 
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13)."""
+    def __call__(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) FAP."""
         held = timeline.held
         keys = contexts(timeline.phoneme[held], self.phone_set, self.silence)
         mean, variance = look_up(self.motion, keys)
@@ -153,11 +153,9 @@ def _fit(utterances: Sequence[Utterance], training: Training, states: int, stren
 
 def fit(training: Training) -> Synthesis:
     """Chooses the settings on the inner validation part, then fits on the whole."""
-
-    def prepare(part: Training) -> Callable[..., Any]:
-        return lambda setting: _fit(part.utterances, training, *setting).predict
-
-    return _fit(training.utterances, training, *choose(training, list(itertools.product(STATES, STRENGTHS)), prepare))
+    return _fit(training.utterances, training, *choose(
+        training, list(itertools.product(STATES, STRENGTHS)),
+        lambda part: lambda setting: _fit(part.utterances, training, *setting)))
 
 
 # ---- The states of frames within their phonemes, for HMM synthesis ---------------------------------------------------

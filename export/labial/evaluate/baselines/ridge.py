@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Any, Callable, Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -13,7 +13,7 @@ from scipy.sparse import csr_matrix, diags, hstack, vstack
 
 from labial.evaluate.baselines import steps
 from labial.evaluate.material import Timeline, Utterance
-from labial.evaluate.training import Training, choose
+from labial.evaluate.training import Predictor, Training, choose
 from labial.files.faps import CHANNELS
 from labial.train.recordings import neighbour_classes
 
@@ -49,8 +49,7 @@ def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, si
     """The weighted normal equations of the human motion less `base` (13,)."""
     rows = [design(item.timeline) for item in utterances]
     sparse, dense = vstack([row.sparse for row in rows]).tocsr(), np.concatenate([row.dense for row in rows])
-    phoneme_at = np.concatenate([item.timeline.phoneme_at for item in utterances])
-    weight = np.where(phoneme_at == silence, SILENCE_WEIGHT, 1.0)
+    weight = np.where(np.concatenate([item.timeline.phoneme_at for item in utterances]) == silence, SILENCE_WEIGHT, 1.0)
     motion = np.concatenate([item.human for item in utterances]) - base
     weighted = (diags(weight) @ sparse).T.tocsr()
     heavy = dense * weight[:, None]
@@ -64,36 +63,29 @@ def solve(equations: Normal, penalty: np.ndarray) -> np.ndarray:
     return cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
 
 
-@dataclass(frozen=True)
-class Linear:
-    """Motion that is linear in the features."""
-
-    design: Design
-    base: np.ndarray  #: (13,) FAP
-    weights: np.ndarray  #: (K, 13)
-
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13)."""
-        return self.base + self.design(timeline) @ self.weights
-
-
-def fit_ridge(training: Training, make_design: Callable[[Training], Design], penalties: Sequence[np.ndarray]) -> Linear:
-    """Chooses among `penalties`, each (K,), on the inner validation part, then fits on the whole training part.
-    `make_design` computes the features of a part, since they may be trained, too."""
+def _mean(training: Training) -> np.ndarray:
+    """(13,) FAP: the mean of the training frames outside silence."""
     frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
-    base = np.concatenate(frames).mean(axis=0)
+    return np.concatenate(frames).mean(axis=0)
 
-    def prepare(part: Training) -> Callable[..., Any]:
-        rough = make_design(part)
-        equations = normal(rough, part.utterances, base, training.silence)
+
+def fit_ridge(training: Training, make_design: Callable[[Training], Design],
+              penalties: Sequence[np.ndarray]) -> Predictor:
+    """Motion that is linear in the features. Chooses among `penalties`, each (K,), on the inner validation part, then
+    fits on the whole training part. `make_design` computes the features of a part, since they may be trained, too."""
+    base = _mean(training)
+
+    def prepare(part: Training) -> Callable[[np.ndarray], Predictor]:
+        design = make_design(part)
+        equations = normal(design, part.utterances, base, training.silence)
         known: Dict[int, Rows] = {}  # features of the utterances that every penalty is tried on
 
         def rows(timeline: Timeline) -> Rows:
             if id(timeline) not in known:
-                known[id(timeline)] = rough(timeline)
+                known[id(timeline)] = design(timeline)
             return known[id(timeline)]
 
-        def predict_with(penalty: np.ndarray) -> Callable[..., Any]:
+        def predict_with(penalty: np.ndarray) -> Predictor:
             weights = solve(equations, penalty)
             return lambda timeline: base + rows(timeline) @ weights
 
@@ -101,27 +93,14 @@ def fit_ridge(training: Training, make_design: Callable[[Training], Design], pen
 
     penalty = choose(training, penalties, prepare)
     design = make_design(training)
-    return Linear(design, base, solve(normal(design, training.utterances, base, training.silence), penalty))
+    weights = solve(normal(design, training.utterances, base, training.silence), penalty)
+    return lambda timeline: base + design(timeline) @ weights
 
 
-# ---- Mean shape ------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Mean:
-    """A mouth that does not move."""
-
-    shape: np.ndarray  #: (13,) FAP
-
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13) the shape, repeated."""
-        return np.tile(self.shape, (timeline.frames, 1))
-
-
-def fit_mean(training: Training) -> Mean:
-    """The mean of the training frames outside silence, for all frames."""
-    frames = [item.human[item.timeline.phoneme_at != training.silence] for item in training.utterances]
-    return Mean(np.concatenate(frames).mean(axis=0))
+def fit_mean(training: Training) -> Predictor:
+    """A mouth that does not move: the mean of the training frames outside silence, for all frames."""
+    shape = _mean(training)
+    return lambda timeline: np.tile(shape, (timeline.frames, 1))
 
 
 # ---- The phoneme, its neighbours and its duration --------------------------------------------------------------------
@@ -158,7 +137,7 @@ def _design_of_neighbours(training: Training) -> Design:
     return rows
 
 
-def fit_regression(training: Training) -> Linear:
+def fit_regression(training: Training) -> Predictor:
     """Linear regression from the phoneme, its neighbours' classes and its duration; chooses the penalty on the inner
     validation part. Each feature may also change along the phoneme: the design has it once unchanged and once times the
     frame's relative position, so that motion need not be a step."""
@@ -198,8 +177,7 @@ def labels(label_at: np.ndarray, lag: np.ndarray, count: int, outside: int) -> c
 
 def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
     """(T, L * K) the stream (T, K) at every lag, held beyond its ends."""
-    at = np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)
-    return stream[at].reshape(len(stream), -1)
+    return stream[np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)].reshape(len(stream), -1)
 
 
 def _design_of_window(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> Design:
@@ -209,14 +187,14 @@ def _design_of_window(training: Training, of_class: bool, stream: Optional[steps
     wide = window(training.fps, max(1, round(SPACING * training.fps)))
     count = int(label_of.max()) + 1
     if stream is not None:
-        moving = np.concatenate([stream.predict(item.timeline) for item in training.utterances])
+        moving = np.concatenate([stream(item.timeline) for item in training.utterances])
         centre, spread = moving.mean(axis=0), np.maximum(moving.std(axis=0), 1e-9)
 
     def rows(timeline: Timeline) -> Rows:
         onehot = labels(label_of[timeline.phoneme_at], lag, count, int(label_of[training.silence]))
         if stream is None:
             return Rows(onehot, np.zeros((timeline.frames, 0)))
-        return Rows(onehot, shifted((stream.predict(timeline) - centre) / spread, wide))
+        return Rows(onehot, shifted((stream(timeline) - centre) / spread, wide))
 
     return rows
 
@@ -229,18 +207,17 @@ def _penalties(training: Training, of_class: bool, with_stream: bool) -> List[np
     return [np.repeat([label, stream], [labels_wide, stream_wide]) for label, stream in tried]
 
 
-def _fit_window(training: Training, of_class: bool, with_stream: bool) -> Linear:
-    make: Callable[[Training], Design] = lambda part: _design_of_window(  # noqa: E731
-        part, of_class, steps.fit(part, context=True) if with_stream else None
-    )
-    return fit_ridge(training, make, _penalties(training, of_class, with_stream))
+def _fit_window(training: Training, of_class: bool, with_stream: bool) -> Predictor:
+    return fit_ridge(training, lambda part: _design_of_window(
+        part, of_class, steps.fit(part, context=True) if with_stream else None),
+        _penalties(training, of_class, with_stream))
 
 
-def fit_phonemes(training: Training) -> Linear:
+def fit_phonemes(training: Training) -> Predictor:
     """Phoneme labels within REACH."""
     return _fit_window(training, of_class=False, with_stream=False)
 
 
-def fit_classes(training: Training) -> Linear:
+def fit_classes(training: Training) -> Predictor:
     """Viseme-class labels within REACH, and the context-aware step stream of all channels."""
     return _fit_window(training, of_class=True, with_stream=True)

@@ -7,7 +7,7 @@ and the step stream under a Gaussian.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Dict
+from typing import Dict
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -40,15 +40,14 @@ class Steps:
         before, after = neighbour_classes(phoneme, self.viseme_class, self.silence)
         return shapes(self.tables, chosen(self.tables, phoneme, seconds, before, after, soft=self.soft))
 
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13) the shapes, each for the length of its segment."""
+    def __call__(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) FAP."""
         return np.repeat(self.selected(timeline), timeline.length[timeline.held], axis=0)
 
 
 def _fit(training: Training, context: bool) -> Steps:
     phone_set = training.phone_set
-    material = recordings([item.episode for item in training.utterances], phone_set, training.fps)
-    items = occurrences(material, phone_set)
+    items = occurrences(recordings([item.episode for item in training.utterances], phone_set, training.fps), phone_set)
     plan = back_off(np.bincount(items.phoneme, minlength=len(phone_set.phonemes)), phone_set)
     vectors = items.vectors()
     scale = corpus_scale(vectors)
@@ -86,20 +85,13 @@ class Blur:
     width: float  #: seconds
     fps: int
 
-    def predict(self, timeline: Timeline) -> np.ndarray:
-        """(T, 13); the first and the last shape extend beyond the ends."""
-        return _smooth(self.steps.predict(timeline), self.width * self.fps)
-
-
-def _smooth(frames: np.ndarray, deviation: float) -> np.ndarray:
-    return gaussian_filter1d(frames, deviation, axis=0, mode="nearest") if deviation > 0 and len(frames) else frames
+    def __call__(self, timeline: Timeline) -> np.ndarray:
+        """(T, 13) FAP."""
+        frames, deviation = self.steps(timeline), self.width * self.fps
+        return gaussian_filter1d(frames, deviation, axis=0, mode="nearest") if deviation > 0 and len(frames) else frames
 
 
 def fit_blur(training: Training) -> Blur:
     """The step stream under a Gaussian; chooses its width on the inner validation part, with shapes from the rest."""
-
-    def prepare(part: Training) -> Callable[..., Any]:
-        rough = fit(part)
-        return lambda width: Blur(rough, width, training.fps).predict
-
-    return Blur(fit(training), choose(training, WIDTHS, prepare), training.fps)
+    width = choose(training, WIDTHS, lambda part: lambda width: Blur(fit(part), width, training.fps))
+    return Blur(fit(training), width, training.fps)
