@@ -78,7 +78,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
         warnings.showwarning = lambda message, *_, **__: _complain(f"warning: {message}")
         try:
             with _ending(), needs(f"labial {options.command}", "tools"):
-                status = int(options.run(options))
+                status = int(options.run(options) or 0)
                 sys.stdout.flush()
                 return status
         except LabialError as error:

@@ -1,9 +1,9 @@
 """The commands of ``labial``, in modules of commands that belong together: their arguments and the code that they run.
 
 For each command NAME its module has two functions, with ``_`` for ``-``: ``add_NAME(command)`` adds the arguments to
-its :class:`argparse.ArgumentParser`; ``run_NAME(options)`` does the work and returns the exit status. `labial.__main__`
-imports only the module of the named command. At their top the modules import only what Python contains, so that help
-works without numpy; a command imports other packages when it runs.
+its :class:`argparse.ArgumentParser`; ``run_NAME(options)`` does the work and returns an exit status other than 0.
+`labial.__main__` imports only the module of the named command. At their top the modules import only what Python
+contains, so that help works without numpy; a command imports other packages when it runs.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ContextManager, Dict, List, Optional, Tup
 from labial.defaults import FPS, KINDS
 from labial.errors import LabialError
 from labial.files.grammar import finite, positive, read_text
-from labial.files.outputs import writing
+from labial.files.outputs import check_suffix, writing
 
 if TYPE_CHECKING:
     import numpy as np
@@ -95,7 +95,6 @@ class Limited:
 
 def format_of(options: argparse.Namespace) -> Format:
     """The format of frames that the options of :func:`add_format` name."""
-    from labial.files.outputs import check_suffix
     from labial.rig.animation import FORMATS
     from labial.rig.description import read
 

@@ -10,10 +10,10 @@ from labial.commands.common import add_kind, add_labels, add_quiet, add_said, ad
 from labial.defaults import EPISODES, WHICH_FACE
 from labial.errors import needs
 from labial.files.grammar import finite, positive, seed
+from labial.files.outputs import check, check_folder
 
 
 def add_timings(command: argparse.ArgumentParser) -> None:
-    """Timings and the output file."""
     command.add_argument("phones", metavar="FILE", help="phoneme timings, as for synth")
     add_source(command)
     add_labels(command)
@@ -24,44 +24,36 @@ def add_timings(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
 
 
-def run_timings(options: argparse.Namespace) -> int:
-    """Writes the .lab."""
+def run_timings(options: argparse.Namespace) -> None:
     from labial.corpus.formats import as_lab
     from labial.corpus.words import Pronunciation
-    from labial.files.outputs import check
 
     check(options.output, ".lab")
     how = Pronunciation(language=options.language)
     offset = options.offset_ms / 1000.0
     put(as_lab(options.phones, options.labels, options.source, how, offset, options.tier), options.output)
-    return 0
 
 
 def add_align(command: argparse.ArgumentParser) -> None:
-    """A sound and its text."""
     command.add_argument("sound", metavar="SOUND", help="WAV, FLAC, Ogg, MP3; any rate and number of channels")
     add_said(command)
     command.add_argument("-o", "--output", metavar="OUT.lab", help="standard output without it")
     add_quiet(command)
 
 
-def run_align(options: argparse.Namespace) -> int:
-    """Writes the .lab."""
+def run_align(options: argparse.Namespace) -> None:
     with needs("aligning", "align"):
         from labial.sound.align import align_with_bar
         from labial.sound.recogniser import summary
-    from labial.files.outputs import check
 
     check(options.output, ".lab")
     found = align_with_bar(options.sound, said(options), shows_progress(options))
     put(found.lab(), options.output)
     if found.stretches and not options.quiet:
         print(f"{options.sound}: {summary(found.stretches)}", file=sys.stderr)
-    return 0
 
 
 def add_landmarks(command: argparse.ArgumentParser) -> None:
-    """A video, and the face to track."""
     command.add_argument("video", metavar="VIDEO")
     command.add_argument("-o", "--output", required=True, metavar="LANDMARKS.npz")
     command.add_argument("--face", choices=WHICH_FACE, help="which is the talker's, where there is "
@@ -71,20 +63,15 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run_landmarks(options: argparse.Namespace) -> int:
-    """Writes the landmarks."""
-    from labial.files.outputs import check
-
+def run_landmarks(options: argparse.Namespace) -> None:
     check(options.output, ".npz")
     with needs("tracking", "record"):
         from labial.capture.track import landmarks
 
     print(landmarks(options.video, options.output, options.face, options.task, progress=shows_progress(options)))
-    return 0
 
 
 def add_record(command: argparse.ArgumentParser) -> None:
-    """Landmarks, properties that their files do not state, and the smoothing."""
     command.add_argument("landmarks", metavar="LANDMARKS", nargs="+", help="one talker's .npz, .npy or .csv files, or "
                          "folders of them, each with its phoneme timings (NAME.lab, .TextGrid, ...) beside it")
     command.add_argument("-o", "--output", required=True, metavar="CORPUS", help="folder, new or empty")
@@ -98,8 +85,7 @@ def add_record(command: argparse.ArgumentParser) -> None:
                          help="what moves faster is smoothed as the tracker's noise; 0 smooths nothing (12)")
 
 
-def run_record(options: argparse.Namespace) -> int:
-    """Writes the corpus."""
+def run_record(options: argparse.Namespace) -> None:
     with needs("recording", "record"):
         from labial.capture.record import record
     from labial.capture.landmarks import Given, parse_size
@@ -108,27 +94,22 @@ def run_record(options: argparse.Namespace) -> int:
     size = parse_size(options.size) if options.size else None
     print(record(options.landmarks, options.output, PHONE_SETS[options.kind], Given(options.fps, size), options.cutoff,
                  options.offset / 1000))
-    return 0
 
 
 def add_laughter_corpus(command: argparse.ArgumentParser) -> None:
-    """A folder, the number of episodes and the seed."""
     command.add_argument("output", metavar="OUT", help="folder, new or empty")
     command.add_argument("--episodes", type=positive, default=EPISODES)
     command.add_argument("--seed", type=seed, default=0)
 
 
-def run_laughter_corpus(options: argparse.Namespace) -> int:
-    """Writes the corpus."""
+def run_laughter_corpus(options: argparse.Namespace) -> None:
     from labial.corpus.laughter import generate
 
     generate(options.output, episodes=options.episodes, seed=options.seed)
     print(f"{options.output}: {options.episodes} synthetic episodes")
-    return 0
 
 
 def add_speech_corpus(command: argparse.ArgumentParser) -> None:
-    """A folder, sentences, voices and how long they speak."""
     command.add_argument("output", metavar="OUT", help="folder, new or empty, for sounds, each with a .lab")
     command.add_argument("--sentences", required=True, nargs="+", metavar="FILE", help="texts, a sentence in each "
                          "line, or metadata.csv of LJ Speech")
@@ -139,13 +120,11 @@ def add_speech_corpus(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run_speech_corpus(options: argparse.Namespace) -> int:
-    """Speaks and writes the folder."""
+def run_speech_corpus(options: argparse.Namespace) -> None:
     with needs("speaking", "hear"):
         from tqdm import tqdm
 
         from labial.hearing.voices import read_sentences, write_corpus
-    from labial.files.outputs import check_folder
 
     check_folder(options.output)
     sentences = [line for path in options.sentences for line in read_sentences(path)]
@@ -153,4 +132,3 @@ def run_speech_corpus(options: argparse.Namespace) -> int:
         done = write_corpus(options.output, sentences, options.voices, options.minutes, options.seed,
                             lambda seconds: bar.update(round(seconds) - bar.n) and None)
     print(f"{options.output}: {done.sounds} sounds, {done.seconds / 60:.1f} minutes")
-    return 0

@@ -15,13 +15,13 @@ from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add
 from labial.defaults import SPLITS
 from labial.errors import LabialError, needs
 from labial.files.grammar import positive, seed
+from labial.files.outputs import check, check_folder, folder
 
 if TYPE_CHECKING:
     from labial.evaluate.material import Options, Outcome
 
 
 def add_evaluate(command: argparse.ArgumentParser) -> None:
-    """Corpora, the data to hold out, and the workers."""
     command.add_argument("corpus", nargs="+", help="as for train; episodes of the first are held out, and Labial's "
                          "models are trained on all of the others too")
     command.add_argument("-o", "--output", required=True, metavar="REPORT", help="folder for tables and plots")
@@ -42,8 +42,7 @@ def add_evaluate(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run_evaluate(options: argparse.Namespace) -> int:
-    """Evaluates, writes the report and prints its first table."""
+def run_evaluate(options: argparse.Namespace) -> None:
     with needs("evaluating", "train,evaluate"):
         from labial.evaluate.material import Options
 
@@ -58,7 +57,6 @@ def run_evaluate(options: argparse.Namespace) -> int:
     for path in _evaluated(options.corpus, options.output, asked, options.jobs, options.engine,
                            shows_progress(options)):
         print(path)
-    return 0
 
 
 def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int, engine: Optional[str],
@@ -74,7 +72,6 @@ def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int,
         from labial.train.workers import Workers
     from labial.corpus import read_corpora
     from labial.corpus.laughter import is_synthetic
-    from labial.files.outputs import check_folder, folder
 
     select(options.methods)  # before the corpora are read
     check_folder(output)
@@ -109,7 +106,6 @@ def _processor_time(outcomes: Sequence[Outcome]) -> str:
 
 
 def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
-    """A model, and the sounds, conditions and methods to judge."""
     command.add_argument("model", metavar="HEAR.npz")
     command.add_argument("folder", nargs="*", metavar="FOLDER", help="speech, as for train-hear")
     command.add_argument("--lips", nargs="+", action="append", metavar="CORPUS", help="judge by lips that were "
@@ -130,13 +126,9 @@ def add_evaluate_hear(command: argparse.ArgumentParser) -> None:
     command.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="processes that align")
 
 
-def run_evaluate_hear(options: argparse.Namespace) -> int:
-    """Prints a table."""
-    from labial.files.outputs import check
-
+def run_evaluate_hear(options: argparse.Namespace) -> None:
     check(options.output)
     put(_by_lips(options) if options.lips else _by_timings(options), options.output)
-    return 0
 
 
 def _by_lips(options: argparse.Namespace) -> str:

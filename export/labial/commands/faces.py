@@ -9,10 +9,11 @@ from typing import Any, Dict, Optional, Tuple
 from labial import BUNDLED
 from labial.commands.common import add_phones, put
 from labial.errors import LabialError, needs
+from labial.files.c import check_name
+from labial.files.outputs import check, check_folder, folder
 
 
 def add_rig(command: argparse.ArgumentParser) -> None:
-    """The description, and the output files."""
     command.add_argument("description", metavar="FACE.toml")
     command.add_argument("-o", "--output", required=True, metavar="DIR")
     command.add_argument("--name", help="of the C symbol and the files; the description's file name without it")
@@ -22,10 +23,7 @@ def add_rig(command: argparse.ArgumentParser) -> None:
     command.add_argument("--no-figure", action="store_true", help="do not draw NAME.svg")
 
 
-def run_rig(options: argparse.Namespace) -> int:
-    """Writes NAME.h, NAME.c and, unless --no-figure, NAME.svg; or the file of --calibrate or --json."""
-    from labial.files.c import check_name
-    from labial.files.outputs import folder
+def run_rig(options: argparse.Namespace) -> None:
     from labial.rig import calibrate, table
     from labial.rig.description import read
 
@@ -34,10 +32,10 @@ def run_rig(options: argparse.Namespace) -> int:
     rig = read(options.description, name)
     if options.calibrate:
         print(calibrate.write(rig, options.output))
-        return 0
+        return
     if options.json:
         print(table.write_json(rig, options.output))
-        return 0
+        return
     with folder(options.output) as made:
         paths = table.write(rig, made)
         if not options.no_figure:
@@ -47,11 +45,9 @@ def run_rig(options: argparse.Namespace) -> int:
             draw_rig(rig, paths[-1])
     for path in paths:
         print(Path(options.output) / path.name)
-    return 0
 
 
 def add_fit(command: argparse.ArgumentParser) -> None:
-    """The avatar and the output file of its rig."""
     command.add_argument("avatar", nargs="+", metavar="AVATAR", help=".glb, .gltf or .vrm, or a table of lip points, "
                          ".csv; several are given one rig that suits them alike")
     command.add_argument("-o", "--output", required=True, metavar="NAME.toml", help="the rig; NAME.png is its picture")
@@ -76,10 +72,8 @@ def _points(options: argparse.Namespace) -> Dict[str, int]:
     return found
 
 
-def run_fit(options: argparse.Namespace) -> int:
-    """Writes the rig and its picture, and prints its accuracy."""
+def run_fit(options: argparse.Namespace) -> None:
     from labial.errors import LabialError, needs
-    from labial.files.outputs import check_folder, folder
 
     output = Path(options.output)
     if output.suffix != ".toml":
@@ -102,11 +96,9 @@ def run_fit(options: argparse.Namespace) -> int:
             names.append(output.with_suffix(".png").name)
             draw(done.rig, done.found, made / names[-1])
     print("\n".join([*done.report, *(str(output.with_name(name)) for name in names)]))
-    return 0
 
 
 def add_plot(command: argparse.ArgumentParser) -> None:
-    """Motions, their phonemes, and the channels to draw."""
     command.add_argument("frames", metavar="FRAMES", nargs="+",
                          help="frames files (.csv), .fap, or models (.npz, or "
                          f"{' or '.join(BUNDLED)}), which speak the timings; several are overlaid")
@@ -116,11 +108,9 @@ def add_plot(command: argparse.ArgumentParser) -> None:
                          "panel each (fap3,opening,stretch,fap17)")
 
 
-def run_plot(options: argparse.Namespace) -> int:
-    """Writes the drawing, and prints how far the lips are apart in each closure."""
+def run_plot(options: argparse.Namespace) -> None:
     with needs("plotting", "plot"):
         from labial.see.plot import DEFAULT, plot
-    from labial.files.outputs import check
     from labial.see.motion import closures, read_bands, read_motions
 
     check(options.output)
@@ -131,7 +121,6 @@ def run_plot(options: argparse.Namespace) -> int:
         if least := closures(motion, bands):
             print(f"{motion.name}: least opening in each p, b, m: "
                   + " ".join(f"{label} {opening:.0f}" for label, opening in least))
-    return 0
 
 
 def _timings(options: argparse.Namespace) -> Tuple[Any, str, Optional[str], Optional[str]]:
@@ -142,7 +131,6 @@ def _timings(options: argparse.Namespace) -> Tuple[Any, str, Optional[str], Opti
 
 
 def add_page(command: argparse.ArgumentParser) -> None:
-    """A motion, its phonemes and its sound."""
     command.add_argument("frames", metavar="FRAMES", help="a frames file (.csv), .fap, or a model (.npz, or "
                          f"{' or '.join(BUNDLED)}), which speaks the timings")
     add_phones(command)
@@ -156,9 +144,7 @@ def add_page(command: argparse.ArgumentParser) -> None:
     command.add_argument("-o", "--output", required=True, metavar="OUT.html")
 
 
-def run_page(options: argparse.Namespace) -> int:
-    """Writes the page."""
-    from labial.files.outputs import check
+def run_page(options: argparse.Namespace) -> None:
     from labial.see.motion import read_bands, read_motion
     from labial.see.page import page
 
@@ -175,4 +161,3 @@ def run_page(options: argparse.Namespace) -> int:
         text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three,
                          _points(options))
     put(text, options.output)
-    return 0

@@ -16,6 +16,7 @@ from labial.commands.common import add_format, add_phones, add_said, format_of, 
 from labial.errors import DataError, LabialError, needs
 from labial.files import wav
 from labial.files.grammar import whole
+from labial.files.outputs import check
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,7 +35,6 @@ _PLAIN = "a WAV file of 16 bits, one or two channels and a usual rate"
 
 
 def add_hear(command: argparse.ArgumentParser) -> None:
-    """A sound, and the format of the frames."""
     command.add_argument("sound", metavar="SOUND", help="speech: a WAV file; a file of another format, if "
                          "the extra align is installed; or - for standard input: a WAV file, or samples of 16 bits "
                          "without a header, low byte first")
@@ -56,11 +56,9 @@ def add_hear(command: argparse.ArgumentParser) -> None:
                          help="of samples without a header: 1 or 2 channels (1)")
 
 
-def run_hear(options: argparse.Namespace) -> int:
-    """Writes the frames."""
+def run_hear(options: argparse.Namespace) -> None:
     import numpy as np
 
-    from labial.files.outputs import check
     from labial.runtime.hearing import FPS, Hearing
 
     check(options.output)
@@ -92,7 +90,6 @@ def run_hear(options: argparse.Namespace) -> int:
             parts, count = iter([whole_motion]), len(whole_motion)
         with opened(options.output) as out:
             form.write(out, _flushed(parts, out), FPS, Path(options.sound).stem, count)
-    return 0
 
 
 class _Words(NamedTuple):

@@ -22,7 +22,9 @@ from labial.commands.common import (
 from labial.core.library import ARTICULATION_MAX
 from labial.defaults import PREDECESSORS
 from labial.errors import LabialError
+from labial.files.c import check_name
 from labial.files.grammar import finite, positive, whole
+from labial.files.outputs import check, check_folder
 from labial.tables.bundled import MODEL_HELP
 
 if TYPE_CHECKING:
@@ -31,7 +33,6 @@ if TYPE_CHECKING:
 
 
 def add_synth(command: argparse.ArgumentParser) -> None:
-    """A model, timings and the format of the frames."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", help="phoneme timings, in a format of --from")
     add_source(command)
@@ -49,13 +50,11 @@ def add_synth(command: argparse.ArgumentParser) -> None:
                          "--method paper) or as the run-time does (all others)")
 
 
-def run_synth(options: argparse.Namespace) -> int:
-    """Writes the frames."""
+def run_synth(options: argparse.Namespace) -> None:
     import numpy as np
 
     from labial.files.faps import CHANNELS
     from labial.files.frames import at_rate
-    from labial.files.outputs import check
     from labial.reference.synthesis import delivered
     from labial.rig.animation import with_shares
     from labial.tables.model import load
@@ -72,11 +71,9 @@ def run_synth(options: argparse.Namespace) -> int:
     frames = at_rate(with_shares(motion, spoken, model.fps), model.fps, fps)
     with opened(options.output) as out:
         form.write(out, [frames], fps, name, len(frames))
-    return 0
 
 
 def add_export(command: argparse.ArgumentParser) -> None:
-    """A model and its name in C."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("--name", required=True, help="of the C symbol and the files")
     command.add_argument("-o", "--output", required=True, metavar="DIR")
@@ -105,11 +102,8 @@ def exported(options: argparse.Namespace, name: str) -> Tuple[Model, ExportedMod
     return model, quantise(model, name, predecessors=options.predecessors)
 
 
-def run_export(options: argparse.Namespace) -> int:
-    """Writes the C files, and prints their memory and the loss."""
+def run_export(options: argparse.Namespace) -> None:
     from labial.evaluate import loss
-    from labial.files.c import check_name
-    from labial.files.outputs import check_folder
     from labial.hearing.model import is_hearing
     from labial.tables import emit
     from labial.tables.phones import drawn_streams
@@ -127,10 +121,9 @@ def run_export(options: argparse.Namespace) -> int:
         print(path)
     print(loss.memory(tables))
     print(loss.quantisation(measured, model, tables))
-    return 0
 
 
-def _export_hearing(options: argparse.Namespace) -> int:
+def _export_hearing(options: argparse.Namespace) -> None:
     """Writes the C files of a model of hearing, and prints their memory."""
     from labial.hearing import emit
     from labial.hearing.model import load
@@ -144,10 +137,9 @@ def _export_hearing(options: argparse.Namespace) -> int:
         print(path)
     print(f"flash {emit.flash_bytes(tables)} B, workspace {emit.workspace_bytes(tables)} B, "
           f"a frame is known {20 * (tables.ahead + SMOOTHING + 1)} ms after its begin")
-    return 0
 
 
-def _export_words(options: argparse.Namespace) -> int:
+def _export_words(options: argparse.Namespace) -> None:
     """Writes tables of words, which `labial train-words` made, and prints their memory."""
     from labial.words import packing
     from labial.words.tables import load
@@ -158,11 +150,9 @@ def _export_words(options: argparse.Namespace) -> int:
     for path in packing.write(packed, options.name, options.output):
         print(path)
     print(f"{packed.size} bytes: trees {len(packed.trees)}, exceptions {len(packed.patches) + 2 * len(packed.buckets)}")
-    return 0
 
 
 def add_check(command: argparse.ArgumentParser) -> None:
-    """A model and timings."""
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
     add_source(command)
@@ -171,7 +161,6 @@ def add_check(command: argparse.ArgumentParser) -> None:
 
 
 def run_check(options: argparse.Namespace) -> int:
-    """Prints the comparison; 1 where a limit is exceeded."""
     from labial.evaluate.check import compare
     from labial.tables.phones import read_stream
 
@@ -186,7 +175,6 @@ def run_check(options: argparse.Namespace) -> int:
 
 
 def add_bake(command: argparse.ArgumentParser) -> None:
-    """The input, the form of the output, and the face."""
     command.add_argument("file", metavar="FILE", help="phoneme timings, as for synth; a sound, as for align; or frames "
                          "(.csv, .fap)")
     command.add_argument("-o", "--output", required=True, metavar="OUT.h")
@@ -205,8 +193,7 @@ def add_bake(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run_bake(options: argparse.Namespace) -> int:
-    """Writes the header and, for a track, its player; prints where parts begin and end."""
+def run_bake(options: argparse.Namespace) -> None:
     from labial.bake.source import Source
     from labial.bake.track import bake
 
@@ -214,4 +201,3 @@ def run_bake(options: argparse.Namespace) -> int:
                     options.tier, shows_progress(options))
     for line in bake(source, options.output, options.kind, options.rig, options.name, options.parts):
         print(line)
-    return 0

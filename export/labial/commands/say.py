@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
 
 from labial.commands.common import put
 from labial.errors import LabialError
+from labial.files.outputs import check, check_suffix, writing
 
 if TYPE_CHECKING:
     from labial.hearing.voices import Spoken
@@ -29,7 +30,6 @@ Timings = List[Tuple[str, int]]
 
 
 def add_say(command: argparse.ArgumentParser) -> None:
-    """A text, its voice and the output."""
     command.add_argument("text", metavar="TEXT", nargs="+", help="what is said; several are joined by blanks")
     command.add_argument("-o", "--output", metavar="OUT", help="a page (.html), frames (.csv, .fap, .jsonl) or timings "
                          "(.lab); timings on standard output without it")
@@ -42,10 +42,7 @@ def add_say(command: argparse.ArgumentParser) -> None:
                          "espeak-ng is needed (en)")
 
 
-def run_say(options: argparse.Namespace) -> int:
-    """Writes the page, the frames or the timings."""
-    from labial.files.outputs import check, check_suffix
-
+def run_say(options: argparse.Namespace) -> None:
     options.text = " ".join(options.text)
     check(options.output)
     form = check_suffix(options.output, *_SUFFIXES) if options.output else ".lab"
@@ -65,15 +62,14 @@ def run_say(options: argparse.Namespace) -> int:
         if form == ".lab":
             rows = [f"{begin / 1000:.3f} {end / 1000:.3f} {label}\n" for label, begin, end in _placed(timings or [])]
             put("".join(rows), options.output)
-            return 0
+            return
         frames = _heard(audio) if timings is None else _rendered(timings)
         if form == ".html":
             from labial.see.player import player
 
             put(player(options.text.strip()[:80], 50, frames, _bands(timings or []), 0.0, audio), options.output)
-            return 0
+            return
         _write_frames(frames, form[1:], options.output)
-    return 0
 
 
 def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
@@ -183,7 +179,6 @@ def _write_sound(spoken: Spoken, path: str) -> None:
 def _write_frames(frames: Sequence[Tuple[int, ...]], form: str, output: str) -> None:
     import numpy as np
 
-    from labial.files.outputs import writing
     from labial.rig.animation import FORMATS
 
     out: Any

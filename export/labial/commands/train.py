@@ -16,6 +16,7 @@ from labial.commands.common import add_engine, add_fps, add_kind, add_quiet, add
 from labial.defaults import CODEBOOK, COMPONENTS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError, needs
 from labial.files.grammar import finite, positive, seed, whole
+from labial.files.outputs import check
 
 if TYPE_CHECKING:
     from labial.corpus.episode import Episode
@@ -32,7 +33,6 @@ _OF_TRAINING = ("kind", "method", "fps", "codebook", "components", "look_ahead",
 
 
 def add_train(command: argparse.ArgumentParser) -> None:
-    """Corpora, the method and its sizes, and the workers."""
     command.add_argument("corpus", nargs="+", help="Labial corpus folder, IEMOCAP or AVLaughterCycle; of several, all "
                          "talkers are brought to the first one's mean and scale, and corpus.toml in a folder tells "
                          "more")
@@ -67,12 +67,10 @@ def add_train(command: argparse.ArgumentParser) -> None:
     add_quiet(command, "bars")
 
 
-def run_train(options: argparse.Namespace) -> int:
-    """Trains, writes the model, and prints unknown apexes and substitutes of phonemes."""
+def run_train(options: argparse.Namespace) -> None:
     with needs("training", "train"):
         from labial.train import backed_off, check_options, train, without_apex
     from labial.corpus import read_corpora
-    from labial.files.outputs import check
     from labial.tables.model import save
 
     check(options.output, ".npz")
@@ -100,14 +98,13 @@ def run_train(options: argparse.Namespace) -> int:
         print(line)
     print(f"{options.output}: {len(model.phonemes)} phonemes, {int(model.component_count.sum())} components, "
           f"{model.log_initial.shape[1]} states, {len(model.kernel_lag)} kernel taps")
-    return 0
 
 
 def _seconds(episodes: Sequence[Episode]) -> float:
     return sum(float(episode.times[-1] - episode.times[0]) for episode in episodes)
 
 
-def _adapt(options: argparse.Namespace) -> int:
+def _adapt(options: argparse.Namespace) -> None:
     """``--adapt``: writes the model of one talker."""
     from labial.corpus.corpora import read_each
     from labial.tables.model import load, save
@@ -133,7 +130,6 @@ def _adapt(options: argparse.Namespace) -> int:
     about: Any = model.training["adapted"]
     print(f"{options.output}: {options.adapt}, adapted to {about['episodes']} episodes, "
           f"{about['frames'] / model.fps:.0f} s")
-    return 0
 
 
 def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
@@ -154,7 +150,6 @@ def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
 
 
 def add_train_words(command: argparse.ArgumentParser) -> None:
-    """The dictionary, the sizes and the output file."""
     command.add_argument("dictionary", metavar="CMUDICT", help="the CMU Pronouncing Dictionary (cmudict.dict)")
     command.add_argument("-o", "--output", required=True, metavar="WORDS.npz")
     command.add_argument("--common", metavar="LIST", help="words by frequency, one per line, from which exceptions are "
@@ -167,11 +162,9 @@ def add_train_words(command: argparse.ArgumentParser) -> None:
     add_quiet(command, "lines")
 
 
-def run_train_words(options: argparse.Namespace) -> int:
-    """Trains, writes the tables, and prints what they consist of."""
+def run_train_words(options: argparse.Namespace) -> None:
     with needs("training", "tools"):
         from labial.words import dictionary, tables, training
-    from labial.files.outputs import check
 
     check(options.output, ".npz")
     report = functools.partial(print, file=sys.stderr) if shows_progress(options) else None
@@ -184,11 +177,9 @@ def run_train_words(options: argparse.Namespace) -> int:
     found = training.train(entries, common, leaves=options.leaves, exceptions=options.exceptions, report=report)
     tables.save(found, options.output)
     print(f"{options.output}: {found.leaves} leaves, {len(found.sounds)} labels, {len(found.exceptions)} exceptions")
-    return 0
 
 
 def add_train_hear(command: argparse.ArgumentParser) -> None:
-    """Folders, the network, and how long it learns."""
     command.add_argument("folder", nargs="+", metavar="FOLDER", help="sounds in any depth, each with timings or a text "
                          "(.txt) beside it, or with a metadata.csv in LJ Speech's layout")
     command.add_argument("-o", "--output", required=True, metavar="HEAR.npz")
@@ -219,8 +210,7 @@ def add_train_hear(command: argparse.ArgumentParser) -> None:
     add_quiet(command)
 
 
-def run_train_hear(options: argparse.Namespace) -> int:
-    """Reads, aligns, prepares, trains, and writes the model."""
+def run_train_hear(options: argparse.Namespace) -> None:
     with needs("training", "hear"):
         import torch  # noqa: F401
         from tqdm import tqdm
@@ -228,7 +218,6 @@ def run_train_hear(options: argparse.Namespace) -> int:
         from labial.hearing import clips, prepared, train
         from labial.hearing.model import load, save
     from labial.files.grammar import read_text
-    from labial.files.outputs import check
 
     check(options.output, ".npz")
     if options.sounds and options.teacher is None:
@@ -272,7 +261,6 @@ def run_train_hear(options: argparse.Namespace) -> int:
     save(model, options.output)
     Path(checkpoint).unlink()
     print(f"{options.output}: {options.model}, {options.steps} steps; {_reached(model.training)}")
-    return 0
 
 
 def _values(text: Any, option: str, count: int) -> Tuple[float, ...]:
