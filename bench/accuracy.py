@@ -95,7 +95,6 @@ def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarr
 
 def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
             streams: Sequence[Stream]) -> Dict[str, float]:
-    """The figures by name."""
     ideal, tables = FloatTables(model), ExportedTables(exported)
     errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
@@ -108,7 +107,6 @@ def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
 
 
 def print_utterances(model: Model, corpus: str) -> None:
-    """Prints all utterances of a corpus."""
     for episode in read_corpus(corpus, model.kind):
         stream = stream_of(episode.segments, model, round(1000 * episode.segments[0].start))
         print(" ".join(f"{phoneme} {milliseconds}" for phoneme, milliseconds in stream))

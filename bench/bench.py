@@ -36,8 +36,6 @@ def _options() -> argparse.Namespace:
 
 
 def _measure(bench: Bench, compiler: str, corpus: str) -> List[profile.Row]:
-    """Measures everything; returns the profile by function."""
-
     def attempt(measurement: Callable[..., object], *arguments: object) -> None:
         try:
             measurement(bench, *arguments)

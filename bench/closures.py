@@ -36,8 +36,6 @@ _LABIODENTALS = ("f", "v")
 
 
 class Said(NamedTuple):
-    """A sentence's motion."""
-
     frames: np.ndarray  #: (T, 13) whole FAPs
     closures: List[Tuple[int, int]]  #: first frame and end of each p, b, m, a frame wider than spoken
     labiodentals: List[Tuple[int, int]]  #: those of each f, v
@@ -74,7 +72,6 @@ def least_openings(frames: np.ndarray, spans: Sequence[Tuple[int, int]]) -> List
 
 
 def jaw(slew: Optional[int], acceleration: Optional[int]) -> Rig:
-    """A jaw of 500 us with these limits."""
     return replace(JAW, outputs=(replace(JAW.outputs[0], slew=slew or 0.0, acceleration=acceleration or 0.0),))
 
 
@@ -101,7 +98,6 @@ def short_of_rest(said: Sequence[Said]) -> np.ndarray:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Runs the command; returns its exit status."""
     if len(arguments) < 2:
         print(__doc__, file=sys.stderr)
         return 2

@@ -29,7 +29,6 @@ _LEAST = {"arkit": 4, "oculus": 8, "vrm": 3}
 
 
 def joined(motions: Sequence[Motion]) -> Motion:
-    """One motion after the other."""
     phonemes, first = [], 0
     for motion in motions:
         phonemes += [(label, first + begin, first + end) for label, begin, end in motion.phonemes]
@@ -62,7 +61,6 @@ def built_in(head: Head, kind: str, motion: Motion) -> Dict[str, np.ndarray]:
 
 
 def rows(path: str, motion: Motion) -> List[str]:
-    """The rows of one head."""
     head = read_table(path) if path.endswith(".csv") else read_head(read_avatar(path), path, {}).head
     found = [row(f"{kind} {head.name}", head, weights, motion) for kind in KINDS
              for weights in [built_in(head, kind, motion)] if weights]
@@ -72,7 +70,6 @@ def rows(path: str, motion: Motion) -> List[str]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Runs the command; returns its exit status."""
     if len(arguments) < 2:
         print(__doc__, file=sys.stderr)
         return 2

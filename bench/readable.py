@@ -144,8 +144,6 @@ window.ready = true;
 
 
 class Stage:
-    """A head in the browser."""
-
     def __init__(self, page: Any, folder: Path, path: str) -> None:
         """Loads the head of the file `path`; `folder` is served."""
         found = read_head(read_avatar(path), path, {})
@@ -279,7 +277,6 @@ def draw_sheet(page: Any, folder: Path, heads: Sequence[str], size: int = 112) -
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("three", metavar="THREE", help="folder of the npm package three")
     parser.add_argument("heads", metavar="HEAD", nargs="+", help=".glb or .vrm")

@@ -23,7 +23,6 @@ RUNS = 5
 
 
 def rendered(timings: List[Tuple[str, int]]) -> int:
-    """Frames of an utterance in one call."""
     return len(labial.render(timings, exact=True))
 
 
@@ -58,7 +57,6 @@ def microseconds(way: Callable[[List[Tuple[str, int]]], int]) -> float:
 
 
 def main() -> None:
-    """Prints the figures."""
     found: Dict[str, float] = {"rendered whole": microseconds(rendered), "one by one": microseconds(one_by_one),
                                "one by one, with ARKit's blendshapes": microseconds(rigged)}
     print(json.dumps({way: round(value, 2) for way, value in found.items()}))

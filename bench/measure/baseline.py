@@ -27,7 +27,6 @@ def read(path: Path) -> List[Figure]:
 
 
 def checked(figures: Sequence[Figure]) -> List[Figure]:
-    """The figures of a baseline."""
     return [figure for figure in figures if figure.checked]
 
 

@@ -53,7 +53,6 @@ BOARDS = _boards()
 
 
 def compiler(board: Board) -> str:
-    """The board's compiler, or LeftOut."""
     return tool(f"{board.prefix}gcc", board.package, f"{board.core} code size")
 
 

@@ -43,7 +43,6 @@ class Figure:
         return not self.timed and not self.versus_others and "corpus" not in self.figure
 
     def as_json(self) -> Dict[str, Union[str, float]]:
-        """The object in bench.json."""
         return asdict(self)
 
 
@@ -69,7 +68,6 @@ class Bench:
         return " ".join(map(_quoted, parts))
 
     def value(self, target: str, figure: str) -> Optional[float]:
-        """A figure measured before, or None."""
         for one in self.figures:
             if (one.target, one.figure) == (target, figure):
                 return one.value

@@ -52,7 +52,6 @@ def _kilobytes(value: float, digits: int = 0) -> str:
 
 
 def readme(source: Sources) -> Iterator[Sentence]:
-    """README.md."""
     bench = source.bench
     diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
     voice = source.results.table(TALKERS, ON_ONE_OTHER)
@@ -73,7 +72,6 @@ def readme(source: Sources) -> Iterator[Sentence]:
 
 
 def costs(source: Sources) -> Iterator[Sentence]:
-    """docs/figures.md."""
     bench = source.bench
     diff, other = source.results.table(RANDOM, DIFF), source.results.table(RANDOM, OTHER)
     unseen = source.results.table(UNSEEN, DIFF)
@@ -144,7 +142,6 @@ _STATES = {"labial_t": ("", " + workspace"),
 
 
 def design(source: Sources) -> Iterator[Sentence]:
-    """DESIGN.md."""
     bench, closures = source.bench, source.record("closures")
     yield sentence("In contact the outer lips are at most {} FAP units apart, in all of {} p, b, m of eight voices",
                    count(closures["stops: most"]), count(closures["stops"]))
@@ -166,7 +163,6 @@ def design(source: Sources) -> Iterator[Sentence]:
 
 
 def method(source: Sources) -> Iterator[Sentence]:
-    """docs/method.md."""
     search, pictured = source.record("search"), source.record("side by side")
     for limits in dict.fromkeys(key.rsplit(" ", 1)[0] for key in search):
         lag, width = limits.split()
@@ -184,7 +180,6 @@ def method(source: Sources) -> Iterator[Sentence]:
 
 
 def reproduction(source: Sources) -> Iterator[Sentence]:
-    """docs/reproduction.md."""
     split = source.record("first split")
     for title in dict.fromkeys(key.split(": ")[0] for key in split):
         values = [(name, split.get(f"{title}: {name}")) for name in
@@ -222,13 +217,11 @@ def reproduction(source: Sources) -> Iterator[Sentence]:
 
 
 def python(source: Sources) -> Iterator[Sentence]:
-    """docs/python.md."""
     yield sentence("The library has {} KB with all models and names", _kilobytes(
         source.bench("shared library with both models", "python")))
 
 
 def porting(source: Sources) -> Iterator[Sentence]:
-    """docs/porting.md."""
     size = source.workspace
     for name in ("WINDOW", "LAG", "SEARCHED", "QUEUE", "REACH", "MODELS"):
         yield sentence(f"| `LABIAL_{name}` | {{}} |", count(source.limit(f"LABIAL_{name}")))
@@ -251,14 +244,12 @@ def porting(source: Sources) -> Iterator[Sentence]:
 
 
 def packages(source: Sources) -> Iterator[Sentence]:
-    """docs/packages.md."""
     major, minor = (source.constant("include/labial/labial.h", f"LABIAL_VERSION_{part}") for part in ("MAJOR", "MINOR"))
     yield sentence("`find_package(labial {})` accepts any {}, but not {}.",
                    *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
 
 
 def esp32_hear(source: Sources) -> Iterator[Sentence]:
-    """docs/esp32-hear.md."""
     own, heard = source.bench("esp32-hear, lips.c: flash", "m4"), source.bench("hear_small: flash", "m4")
     clock = source.bench("code -Os: clock.c", "m4")
     yield sentence("| RAM: stream, workspace of `hear_small`, 64 waiting frames | {} |",
@@ -272,7 +263,6 @@ def esp32_hear(source: Sources) -> Iterator[Sentence]:
 
 
 def beside(source: Sources) -> Iterator[Sentence]:
-    """docs/beside.md."""
     own, heard = source.bench("esp32-hear, lips.c: flash", "m4"), source.bench("hear_small: flash", "m4")
     yield sentence("only a player of {} KB of code", _kilobytes(source.bench("code -Os: beside.c"), 1))
     yield sentence("| hears the sound that it plays ([esp32-hear.md](esp32-hear.md)) | {} KB | {} KB | {} ms of sound "
@@ -286,7 +276,6 @@ def beside(source: Sources) -> Iterator[Sentence]:
 
 
 def hearing(source: Sources) -> Iterator[Sentence]:
-    """docs/hearing.md."""
     for text in ("when the network has heard what follows, {} ms", "If the player has {} ms or more in its buffer",
                  "otherwise its last {} ms have no frames", "the lips are {} ms late, or the sound has to wait"):
         yield sentence(text, source.latency())
@@ -334,7 +323,6 @@ def _by_sound(source: Sources) -> Dict[Tuple[str, str], List[str]]:
 
 
 def words(source: Sources) -> Iterator[Sentence]:
-    """docs/words.md."""
     bench = source.bench
     code = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("{} KB of code and {} KB of tables in flash, 1 KB of RAM for a stream of words and {} bytes of "
@@ -348,7 +336,6 @@ def words(source: Sources) -> Iterator[Sentence]:
 
 
 def browser(source: Sources) -> Iterator[Sentence]:
-    """docs/browser.md."""
     speech, laughter, timed, small, large = (source.bench(figure, "wasm") for figure in _NPM)
     yield sentence("A page that speaks fetches {} KB, compressed; a page that laughs fetches {} KB more",
                    _kilobytes(speech), _kilobytes(laughter))
@@ -358,7 +345,6 @@ def browser(source: Sources) -> Iterator[Sentence]:
 
 
 def servos(source: Sources) -> Iterator[Sentence]:
-    """docs/servos.md."""
     found, other = source.record("closures"), source.record("closures of awb")
     yield sentence("a jaw that only followed them would stop {} us short of 1400 in the median *p, b, m*, and reach it "
                    "in {} %.", count(found["short"]), count(found["reach"]))
@@ -386,7 +372,6 @@ def servos(source: Sources) -> Iterator[Sentence]:
 
 
 def arduino(source: Sources) -> Iterator[Sentence]:
-    """docs/arduino.md."""
     yield sentence("| the player, with all that it supports | {} bytes |", count(source.bench("player", "uno")))
     yield sentence("| the whole program, without the motion | {} bytes |",
                    count(source.bench("program without its motion", "uno")))
@@ -402,7 +387,6 @@ def experiments(source: Sources) -> Iterator[Sentence]:
 
 
 def laughing(source: Sources) -> Iterator[Sentence]:
-    """docs/laughing.md."""
     found = source.record("laughs")
     steps = [key.split(" ")[0] for key in found if key.endswith(" largest")]
 
@@ -419,7 +403,6 @@ def laughing(source: Sources) -> Iterator[Sentence]:
 
 
 def results(source: Sources) -> Iterator[Sentence]:
-    """The summaries of export/RESULTS.md."""
     talkers = _talkers(source)["voice"]
     free, others, everyone = talkers.of(True), talkers.of(False), list(talkers.each.values())
     yield sentence("Summary, other people: on {} labels of talkers of whom the training has nothing, the device's "
@@ -477,7 +460,6 @@ def _laughter(diff: Table, other: Table) -> Iterator[Sentence]:
 
 
 def streams(source: Sources) -> Iterator[Sentence]:
-    """docs/streams.md."""
     code = sum(source.bench(f"code -Os: {name}.c", "m4") for name in _VOICE)
     yield sentence("It needs {} KB of RAM for the follower, its stream included, {} bytes of workspace, {} bytes of "
                    "stack, and 16 bytes for each phoneme", _kilobytes(source.bench("labial_voice_t", "m4"), 1),

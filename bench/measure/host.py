@@ -46,7 +46,6 @@ def heap_peak(command: Sequence[Union[str, Path]], scratch: Path) -> int:
 
 
 def parse(line: str) -> Dict[str, float]:
-    """The output of labial-bench."""
     found = re.match(r"(\d+) frames in [\d.]+ s: (\d+) frames/s, .*checksum ([0-9a-f]{8})\)", line)
     if not found:
         raise RuntimeError(f"labial-bench printed: {line}")

@@ -58,7 +58,6 @@ def environment(bench: Bench) -> Dict[str, str]:
 
 
 def model_path(bench: Bench, name: str) -> Path:
-    """The trained model of a bundled one."""
     return bench.source / "export" / "models" / f"{name}.npz"
 
 

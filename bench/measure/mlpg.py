@@ -23,7 +23,6 @@ SOLVE = "bench_unit_solve"
 
 
 def measure(bench: Bench, compiler: str) -> None:
-    """Labial's instructions and memory."""
     program = bench.build / "bench" / "labial-bench-mlpg"
     command = [program, "labial", str(UNITS)]
     count = collected(command, SOLVE)
@@ -63,7 +62,6 @@ def hts_engine(bench: Bench) -> None:
 
 
 def sptk_mlpg() -> List[str]:
-    """SPTK's mlpg, or LeftOut."""
     for folder in ("/usr/libexec/sptk/bin", "/usr/lib/sptk/bin", "/usr/local/SPTK/bin"):
         if (Path(folder) / "mlpg").is_file():
             return [f"{folder}/mlpg"]

@@ -131,7 +131,6 @@ COMMANDS: Dict[str, Command] = {
 
 
 def read(root: Path) -> Dict[str, Dict[str, object]]:
-    """The records."""
     path = root / FILE
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 

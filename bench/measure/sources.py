@@ -20,7 +20,6 @@ FREE = ("a", "b")
 
 
 def cells(line: str) -> List[str]:
-    """The cells of a table's row."""
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
@@ -90,7 +89,6 @@ class Talkers:
 
 
 def mean_and_error(values: Sequence[float]) -> List[str]:
-    """The mean, and its standard error."""
     return [share(fmean(values)), share(stdev(values) / len(values) ** 0.5)]
 
 
@@ -110,7 +108,6 @@ class Sources:
         self.results = Results((root / "export" / "RESULTS.md").read_text(encoding="utf-8"))
 
     def bench(self, figure: str, target: str = "m0") -> float:
-        """A figure of bench/baseline.json."""
         try:
             return self._bench[target, figure].value
         except KeyError:
@@ -124,7 +121,6 @@ class Sources:
             raise ValueError(f"bench/records.json: no {name}; run python3 bench/figures.py --measure {name}") from None
 
     def limit(self, name: str) -> int:
-        """A limit of include/labial/config.h."""
         return self.constant("include/labial/config.h", name)
 
     def latency(self) -> str:
@@ -138,7 +134,6 @@ class Sources:
         return found.pop()
 
     def constant(self, header: str, name: str) -> int:
-        """A number that a header defines."""
         text = (self.root / header).read_text(encoding="utf-8")
         found = re.search(rf"^\s*#\s*define {name} \(?(\d+)", text, re.MULTILINE)
         if not found:

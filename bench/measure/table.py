@@ -168,7 +168,6 @@ def _goals(bench: Bench) -> List[str]:
 
 
 def markdown(bench: Bench, profile: Sequence[Row]) -> str:
-    """The whole page."""
     tools = sorted({figure.tool for figure in bench.figures if any(c.isdigit() for c in figure.tool)})
     lines = ["# Figures", "", "Measured by `cmake --workflow --preset bench`; `bench.json` has the command of each.",
              f"Tools: {', '.join(tools)}.", ""]
