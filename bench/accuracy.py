@@ -87,16 +87,13 @@ def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequen
     return np.concatenate(errors)
 
 
-def window_errors(tables: ExportedTables, streams: Sequence[Stream]) -> np.ndarray:
-    """(frames, 13) FAP: the delivered motion, with a backward pass from each frame's window, less the motion of one
-    backward pass from the last frame."""
-    return np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True) for stream in streams])
-
-
 def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
             streams: Sequence[Stream]) -> Dict[str, float]:
     ideal, tables = FloatTables(model), ExportedTables(exported)
-    errors, lost_by_window = solver_errors(tables, solver, streams), window_errors(tables, streams)
+    errors = solver_errors(tables, solver, streams)
+    # The delivered motion, with a backward pass from each frame's window, less that of one from the last frame.
+    lost_by_window = np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True)
+                                     for stream in streams])
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
     return {"solver_largest": float(np.abs(errors).max() / UNIT),
             "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),

@@ -76,13 +76,10 @@ def record(sources: Sequence[PathLike], output: PathLike, phone_set: PhoneSet, g
     lines.append(f"apex: the loudest moment of {told(phonemes)} of {len(phonemes)} phonemes"
                  + ("" if told(phonemes) == len(phonemes) else "; of the others, whose sound is not known, the middle"))
     if phone_set.kind == "speech":
-        lines += advice(estimate([_episode(*what) for what in finished]), offset)
+        lines += advice(estimate([
+            Episode(item.landmarks.path.stem, item.landmarks.times[0] + np.arange(len(frames)) / fps, frames,
+                    item.segments) for item, frames, fps in finished]), offset)
     return "\n".join(lines)
-
-
-def _episode(item: Recording, frames: np.ndarray, fps: float) -> Episode:
-    return Episode(item.landmarks.path.stem, item.landmarks.times[0] + np.arange(len(frames)) / fps, frames,
-                   item.segments)
 
 
 def _files(sources: Sequence[PathLike]) -> List[Path]:

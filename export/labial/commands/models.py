@@ -8,17 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Tuple
 
-from labial.commands.common import (
-    add_format,
-    add_labels,
-    add_quiet,
-    add_said,
-    add_source,
-    format_of,
-    opened,
-    said,
-    shows_progress,
-)
+from labial.commands import common
 from labial.core.library import ARTICULATION_MAX
 from labial.defaults import PREDECESSORS
 from labial.errors import LabialError
@@ -35,12 +25,12 @@ if TYPE_CHECKING:
 def add_synth(command: argparse.ArgumentParser) -> None:
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", help="phoneme timings, in a format of --from")
-    add_source(command)
+    common.add_source(command)
     command.add_argument("-o", "--output", metavar="FRAMES", help="standard output without it")
-    add_format(command)
+    common.add_format(command)
     command.add_argument("--fps", type=functools.partial(whole, 1, 1000), metavar="RATE", help="frames per second of "
                          "the output, resampled; the model's without it. Greta plays 25, whatever a .fap says")
-    add_labels(command)
+    common.add_labels(command)
     command.add_argument("--articulation", type=functools.partial(whole, 0, ARTICULATION_MAX), metavar="PERCENT",
                          default=100, help="how far the mouth moves: 50 is a mumble, 130 a shout (100)")
     command.add_argument("--exact", action="store_true",
@@ -61,7 +51,7 @@ def run_synth(options: argparse.Namespace) -> None:
     from labial.tables.phones import read_stream
 
     check(options.output)
-    form = format_of(options)
+    form = common.format_of(options)
     model = load(options.model)
     phonemes = read_stream(options.phones, model, options.labels, options.source, options.tier)
     fps, name = options.fps or model.fps, Path(options.model).stem
@@ -69,7 +59,7 @@ def run_synth(options: argparse.Namespace) -> None:
         model, phonemes, whole=options.whole, articulation=options.articulation, exact=options.exact)])
     spoken = [(model.phonemes[phoneme], milliseconds) for phoneme, milliseconds in phonemes]
     frames = at_rate(with_shares(motion, spoken, model.fps), model.fps, fps)
-    with opened(options.output) as out:
+    with common.opened(options.output) as out:
         form.write(out, [frames], fps, name, len(frames))
 
 
@@ -155,8 +145,8 @@ def _export_words(options: argparse.Namespace) -> None:
 def add_check(command: argparse.ArgumentParser) -> None:
     command.add_argument("model", metavar="MODEL", help=MODEL_HELP)
     command.add_argument("phones", metavar="PHONES", nargs="+", help="phoneme timings, as for synth")
-    add_source(command)
-    add_labels(command)
+    common.add_source(command)
+    common.add_labels(command)
     add_table_options(command)
 
 
@@ -184,20 +174,20 @@ def add_bake(command: argparse.ArgumentParser) -> None:
     command.add_argument("--rig", metavar="FACE.toml", help="what a track moves, as for rig; a jaw without it")
     command.add_argument("--parts", metavar="SECONDS", help="a track in parts of so many seconds at most, cut in "
                          "pauses, each of which can be begun with; pauses: cut in every pause of 0.4 s or more")
-    add_said(command)
-    add_source(command)
-    add_labels(command)
+    common.add_said(command)
+    common.add_source(command)
+    common.add_labels(command)
     command.add_argument("--model", metavar="MODEL", help=f"{MODEL_HELP}; without it the one of these that knows the "
                          "phonemes")
     command.add_argument("--name", help="of the C symbols; the header's file name without it")
-    add_quiet(command)
+    common.add_quiet(command)
 
 
 def run_bake(options: argparse.Namespace) -> None:
     from labial.bake.source import Source
     from labial.bake.track import bake
 
-    source = Source(options.file, options.model, said(options), options.labels, options.source,
-                    options.tier, shows_progress(options))
+    source = Source(options.file, options.model, common.said(options), options.labels, options.source,
+                    options.tier, common.shows_progress(options))
     for line in bake(source, options.output, options.kind, options.rig, options.name, options.parts):
         print(line)

@@ -256,11 +256,14 @@ def run_train_hear(options: argparse.Namespace) -> None:
             print(f"{folder}: {len(found)} sounds, {seconds / 3600:.2f} hours prepared", file=sys.stderr)
     checkpoint = f"{options.output}.checkpoint"
     known = len(options.folder)
-    model = train.train(folders[:known], asked, checkpoint, None if options.quiet else _print, Path(options.output),
+    report = None if options.quiet else functools.partial(print, file=sys.stderr, flush=True)
+    model = train.train(folders[:known], asked, checkpoint, report, Path(options.output),
                         start, folders[known:], teacher)
     save(model, options.output)
     Path(checkpoint).unlink()
-    print(f"{options.output}: {options.model}, {options.steps} steps; {_reached(model.training)}")
+    reached: Any = model.training["held_out"]
+    print(f"{options.output}: {options.model}, {options.steps} steps; held out: "
+          + ", ".join(f"{name} {value:g}" for name, value in reached.items()))
 
 
 def _values(text: Any, option: str, count: int) -> Tuple[float, ...]:
@@ -278,11 +281,3 @@ def _values(text: Any, option: str, count: int) -> Tuple[float, ...]:
 def _tell(bar: Any, done: int, total: int) -> None:
     bar.total = total
     bar.update(done - bar.n)
-
-
-def _print(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
-
-
-def _reached(training: Any) -> str:
-    return "held out: " + ", ".join(f"{name} {value:g}" for name, value in training["held_out"].items())

@@ -195,7 +195,8 @@ def resample(episode: Episode, fps: int) -> Resampled:
     if not episode.segments:
         raise LabialError(f"episode {episode.name} has no segments")
     origin = episode.segments[0].start
-    ends = [_round((segment.end - origin) * fps) for segment in episode.segments]
+    # The nearest integer, halves up, also where binary fractions fall just short of a half.
+    ends = [int(np.floor((segment.end - origin) * fps + 0.5 + 1e-6)) for segment in episode.segments]
     counts = np.diff([0, *ends]).astype(np.int64)
     total = ends[-1]
     if total == 0:
@@ -207,8 +208,3 @@ def resample(episode: Episode, fps: int) -> Resampled:
         frame = min(max(int(np.floor((moment - origin) * fps + 1e-6)), int(first)), int(first + max(count, 1)) - 1)
         apexes.append(min(frame, total - 1))
     return Resampled(frames, counts, np.array(apexes, dtype=np.int64))
-
-
-def _round(value: float) -> int:
-    """To the nearest integer, halves up, also where binary fractions fall just short of a half."""
-    return int(np.floor(value + 0.5 + 1e-6))

@@ -170,7 +170,7 @@ def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
         elif last and label.isspace() and token.duration <= LONGEST_GAP:
             result[-1] = _grown(last, token.end, last.label)
             joins = False
-        elif _is_silence(label):
+        elif all(unicodedata.category(c)[0] in "PSZC" for c in label):  # silence
             if result and not last:
                 result[-1] = _grown(result[-1], token.end, "")
             else:
@@ -190,10 +190,6 @@ def _grown(segment: SourceSegment, end: float, label: str) -> SourceSegment:
 def _is_mark(label: str) -> bool:
     """Whether `label` only modifies the phoneme before it: length, release, nasality, tone."""
     return bool(label) and all(unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label)
-
-
-def _is_silence(label: str) -> bool:
-    return all(unicodedata.category(c)[0] in "PSZC" for c in label)
 
 
 def names() -> Tuple[str, ...]:

@@ -176,7 +176,7 @@ _IPA = {
     "CH": "tʃ ʧ tɕ ʨ tʂ ʈʂ ꭧ tɕh ts. ts.h cr", "JH": "dʒ ʤ dʑ ʥ dʐ ɖʐ ꭦ", "R": "ɹ ɻ", "Y": "j ʝ",
     "K": "k c q x kh kx c\u00e7 qχ", "G": "g ɡ ɟ ɣ ɢ ʁ ʀ ɰ ɠ ʄ ʛ ɟʝ", "NG": "ŋ ɴ",
     "HH": "h ɦ \u00e7 c\u0327 χ ħ ʕ ʔ ʡ ʜ ʢ", "W": "w ʍ ɥ",
-}  # fmt: skip
+}
 
 _XSAMPA = {
     "SIL": _SILENCE,

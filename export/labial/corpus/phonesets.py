@@ -70,7 +70,7 @@ class PhoneSet:
         known: Dict[str, str] = {}
         for item in reversed(LABEL_SETS):
             known.update(self.aliases[item])
-        return {**{label: phoneme for label, phoneme in known.items() if not _is_digit(label)}, **own}
+        return {**{label: phoneme for label, phoneme in known.items() if label not in tuple("0123456789")}, **own}
 
     def resolve(self, label: str, labels: str = AUTO) -> Optional[str]:
         """The phoneme that `label` means in the set `labels`, or None: as it stands, else without stress, length and
@@ -87,10 +87,6 @@ class PhoneSet:
         if labels not in self._longest:
             self._longest[labels] = longest_of(names)
         return nearest(names, self._longest[labels], label, self.silence, self.names().get("ə", self.silence))
-
-
-def _is_digit(label: str) -> bool:
-    return len(label) == 1 and label in "0123456789"
 
 
 def aliases_for(kind: str, phonemes: Sequence[str], own: Dict[str, str]) -> Dict[str, Dict[str, str]]:

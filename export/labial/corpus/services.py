@@ -244,7 +244,7 @@ class _Tell:
                 moment = end
             if self.pieces:
                 first, last = (field.found(one)[0] for field in self.pieces)
-                if before is not None and first == behind and _adjoin(before[0], text):
+                if before is not None and first == behind and before[0][-1:].isalnum() and text[:1].isalnum():
                     before = (before[0] + text, before[1], end, before[3])
                 else:
                     if before is not None:
@@ -364,10 +364,6 @@ def _flat(value: Any, depth: int) -> List[Any]:
 def _held(item: Timed, after: float, hold: float) -> Optional[float]:
     """The end of an item which lasts until the next one if the gap is short."""
     return item.end if item.end is None or after == math.inf or item.end < after - hold else after
-
-
-def _adjoin(before: str, after: str) -> bool:
-    return bool(before and after) and before[-1].isalnum() and after[0].isalnum()
 
 
 class Service:

@@ -16,7 +16,6 @@ import numpy as np
 
 from labial.evaluate.choices import Task, compare, setting
 from labial.evaluate.material import Timeline
-from labial.files.faps import CHANNELS
 from labial.reference import published, stream
 from labial.reference.tables import FloatTables
 from labial.tables.model import Model
@@ -33,11 +32,6 @@ def _over_all_states(model: Model, timeline: Timeline) -> np.ndarray:
     return stream.synthesise(FloatTables(model), timeline.stream, lag=max(timeline.frames, 1), searched=states)
 
 
-def _solved_at_once(model: Model, timeline: Timeline) -> np.ndarray:
-    """The same, with equation 3 solved for the whole utterance."""
-    return stream.synthesise(FloatTables(model), timeline.stream, whole=True)
-
-
 def _unit_by_unit(model: Model, timeline: Timeline) -> np.ndarray:
     """The same, with units that are searched, solved and joined as published."""
     tables = FloatTables(model)
@@ -52,21 +46,9 @@ def _unit_by_unit(model: Model, timeline: Timeline) -> np.ndarray:
     return tables.complete(published.join(cut, motion))
 
 
-def _without_kernels(model: Model) -> Model:
-    return replace(model, kernel=np.zeros((len(model.phonemes), 0, CHANNELS)), kernel_lag=np.zeros(0, dtype=np.int64))
-
-
-def _without_pairs(model: Model) -> Model:
-    return replace(model, pair_key=model.pair_key[:0], pair_shape=model.pair_shape[:0])
-
-
 def _without_contexts(model: Model) -> Model:
     none = np.zeros((len(model.log_weight), 0))
     return replace(model, log_previous=none, log_next=none)
-
-
-def _without_floors(model: Model) -> Model:
-    return replace(model, floor=np.full_like(model.floor, -np.inf), contact=np.zeros_like(model.contact))
 
 
 @dataclass(frozen=True)
@@ -84,12 +66,15 @@ DEPARTURES = (
     Departure("context", _without_contexts),
     Departure("mean of the components: the best one alone", lambda model: replace(model, soft=False)),
     Departure("slopes of durations", lambda model: replace(model, slope=np.zeros_like(model.slope))),
-    Departure("pairs", _without_pairs),
-    Departure("temporal kernels", _without_kernels),
-    Departure("floors, contact and rest", _without_floors),
+    Departure("pairs", lambda model: replace(model, pair_key=model.pair_key[:0], pair_shape=model.pair_shape[:0])),
+    Departure("temporal kernels", lambda model: replace(
+        model, kernel=model.kernel[:, :0], kernel_lag=model.kernel_lag[:0])),
+    Departure("floors, contact and rest", lambda model: replace(
+        model, floor=np.full_like(model.floor, -np.inf), contact=np.zeros_like(model.contact))),
     Departure("anchors", lambda model: replace(model, state_anchor=np.zeros_like(model.state_anchor))),
     Departure("search of eight states, decided at once: whole units, all states", synthesise=_over_all_states),
-    Departure("window of the solution: whole utterances", synthesise=_solved_at_once),
+    Departure("window of the solution: whole utterances", synthesise=lambda model, timeline: stream.synthesise(
+        FloatTables(model), timeline.stream, whole=True)),
     Departure("continuous operation: units searched, solved and joined as published", synthesise=_unit_by_unit),
 )
 

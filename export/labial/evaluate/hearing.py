@@ -41,11 +41,6 @@ def _open_pose() -> np.ndarray:
     return frames([(SPEECH.silence, 200), ("AA", 400)], 30)[20]
 
 
-@cache
-def _shut_pose() -> np.ndarray:
-    return closure().pose
-
-
 def _pieces(sound: np.ndarray) -> np.ndarray:
     count = frames_of(len(sound))
     return np.pad(np.asarray(sound, np.float64), (0, count * FRAME - len(sound))).reshape(count, FRAME)
@@ -93,7 +88,7 @@ def loudness_and_crossings(sound: np.ndarray) -> np.ndarray:
 
 
 def _pose(share: np.ndarray) -> np.ndarray:
-    shut = _shut_pose()
+    shut = closure().pose
     return shut + share[:, None] * (_open_pose() - shut)
 
 
@@ -169,31 +164,20 @@ def pink(count: int, random: np.random.Generator) -> np.ndarray:
     return np.fft.irfft(spectrum / np.sqrt(np.maximum(frequency, 20.0)), count)
 
 
-def _white(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return _noisy(sound, random.normal(size=len(sound)), 20.0)
-
-
-def _pink(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return _noisy(sound, pink(len(sound), random), 10.0)
-
-
 def _telephone(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
     limited = distort.limited(sound, 300.0, 3400.0)
     return distort.as_integers(distort.companded(limited / max(float(np.abs(limited).max(initial=0)), 1e-9)), PEAK)
-
-
-def _room(sound: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    return distort.as_integers(distort.reverberated(sound, 0.25, 1.0, random), PEAK)
 
 
 #: What is done to a sound, by name.
 CONDITIONS: Dict[str, Callable[[np.ndarray, np.random.Generator], np.ndarray]] = {
     "clean": lambda sound, _: distort.as_integers(sound, PEAK),
     "-40 dBFS": lambda sound, _: distort.as_integers(sound, -40.0),
-    "white noise 20 dB": _white,
-    "pink noise 10 dB": _pink,
+    "white noise 20 dB": lambda sound, random: _noisy(sound, random.normal(size=len(sound)), 20.0),
+    "pink noise 10 dB": lambda sound, random: _noisy(sound, pink(len(sound), random), 10.0),
     "telephone": _telephone,
-    "reverberation .25 s": _room,
+    "reverberation .25 s": lambda sound, random: distort.as_integers(
+        distort.reverberated(sound, 0.25, 1.0, random), PEAK),
     "clipped 5 %": lambda sound, _: distort.as_integers(distort.clipped(sound, 0.05), PEAK),
 }
 

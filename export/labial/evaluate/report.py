@@ -248,10 +248,6 @@ LONGEST = 5
 DRAWN = ("hmm_synthesis", "paper", "labial")
 
 
-def _drawn(example: Example) -> List[str]:
-    return [name for name in DRAWN if name in example.motion] or list(example.motion)[-2:]
-
-
 def _stretch(example: Example) -> Tuple[int, int, str]:
     """First frame, end frame and name of the word, or train of pulses, that is shown; else the whole utterance."""
     given = example.utterance.timeline
@@ -279,7 +275,8 @@ def _curves(axes: Axes, example: Example, frames: slice, channel: int, options: 
     time = (np.arange(frames.start, frames.stop) + 0.5) / options.fps
     original = title(HUMAN, options.synthetic)
     axes.plot(time, example.utterance.human[frames, channel], color="black", linewidth=1.6, label=original)
-    for name, colour in zip(_drawn(example), COLOURS):
+    drawn = [name for name in DRAWN if name in example.motion] or list(example.motion)[-2:]
+    for name, colour in zip(drawn, COLOURS):
         axes.plot(time, example.motion[name][frames, channel], color=colour, linewidth=1.3, label=title(name))
     axes.set_xlim(frames.start / options.fps, frames.stop / options.fps)
 

@@ -28,7 +28,7 @@ from labial.hearing.features import (
     WINDOW,
     frames_of,
     places,
-)  # fmt: skip
+)
 from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
 from labial.reference.fade import EASE, FADE
@@ -273,7 +273,8 @@ def _of_sound(tables: HearingTables, sound: np.ndarray, rate: int, begin: int) -
     count = frames_of(len(samples))
     frames = count + SMOOTHING + tables.ahead
     padded = extended(samples, 0, frames * FRAME - len(samples))
-    return _of_energies(tables, log_energies(padded), _silent_hops(padded), count, begin)
+    silent = np.ptp(padded.reshape(-1, HOP), axis=1) <= SILENT
+    return _of_energies(tables, log_energies(padded), silent, count, begin)
 
 
 def _of_energies(tables: HearingTables, energies: np.ndarray, silent: np.ndarray, count: int, begin: int) -> _Told:
@@ -332,11 +333,6 @@ def visemes(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact: 
 def level_after(tables: HearingTables, sound: np.ndarray, begin: int = BEGIN) -> int:
     """The level, in 1 / `LEVEL_ONE`, when a stream has delivered a sound: that with which the next one begins."""
     return _of_sound(tables, sound, 16000, begin).level
-
-
-def _silent_hops(samples: np.ndarray) -> np.ndarray:
-    """(n,) bool: which of n hops of samples are silent."""
-    return np.ptp(samples.reshape(-1, HOP), axis=1) <= SILENT
 
 
 def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:

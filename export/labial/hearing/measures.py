@@ -23,7 +23,7 @@ from labial.files.faps import TOUCHING
 from labial.files.frames import opening, spans
 from labial.hearing.features import HOPS, normalise
 from labial.hearing.model import CLASSES, CLOSED, HearingModel
-from labial.hearing.network import Heard, closed, run, smoothed
+from labial.hearing.network import closed, run, smoothed
 from labial.hearing.prepared import Prepared
 
 #: Frames that a closure may be early or late: 40 ms.
@@ -165,7 +165,8 @@ def choose(model: HearingModel, folders: Sequence[Prepared], shares: np.ndarray)
     for begin, width in itertools.product(_BEGIN, _WIDTH):
         edges = (begin, begin + width)
         tried = replace(model, close_from=edges[0], close_to=edges[1])
-        reached = pooled([_figures(tried, item) for item in heard], shares.tolist())
+        reached = pooled([measured([(frames, smoothed(closed(tried, told).faps), classes)
+                                    for told, frames, classes in item]) for item in heard], shares.tolist())
         value = worth(reached)
         if value > best:
             best, chosen = value, Choice(edges, reached)
@@ -186,7 +187,3 @@ def _takes(item: Prepared) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray]
     for begin, end in zip(ends - item.lengths, ends):
         energies = item.energies[HOPS * begin : HOPS * end].astype(np.float32)
         yield normalise(energies).reshape(end - begin, -1), item.frames[begin:end], item.classes[begin:end]
-
-
-def _figures(model: HearingModel, heard: List[Tuple[Heard, np.ndarray, np.ndarray]]) -> Figures:
-    return measured([(frames, smoothed(closed(model, item).faps), classes) for item, frames, classes in heard])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
@@ -66,6 +67,7 @@ class Closure(NamedTuple):
     share: np.ndarray  #: (13,) float32, 0 .. 1: how far each channel follows the pose
 
 
+@cache
 def closure() -> Closure:
     """The median of Labial's frames at the least opening of p, b and m between all vowels, and how far each channel is
     there wherever it was before: 1 less its variance in these frames over that in all of these sounds. So lips close,

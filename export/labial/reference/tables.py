@@ -15,19 +15,7 @@ import numpy as np
 from labial.reference.contact import FRAMES, PARTED
 from labial.reference.shape import ShapeTables, choose, pairs_beside, shapes
 from labial.reference.viterbi import LAG, Chains, decode, normal_chains
-from labial.tables.fixed import (
-    DURATION_Z_MAX,
-    EMISSION_Z_MAX,
-    LEAP,
-    POSITION_MAX,
-    POSITION_SCALE,
-    SEARCHED,
-    rounded_shift,
-    share_value,
-    short_gain_z,
-    weight_value,
-    z_cost,
-)
+from labial.tables import fixed
 from labial.tables.followers import complete, in_integers, interpolated, solved
 from labial.tables.model import Model
 from labial.tables.quantise import ExportedModel
@@ -91,7 +79,7 @@ class FloatTables:
         return shapes + self._kernel[neighbours, np.arange(neighbours.shape[1])].sum(axis=1)
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
-               searched: int = SEARCHED) -> np.ndarray:
+               searched: int = fixed.SEARCHED) -> np.ndarray:
         """(T, C) int64: the state path for targets (T, C), given the frames (T,) that end units; the first is
         frame `begin` of the stream. A step considers `searched` states."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
@@ -133,10 +121,10 @@ class ExportedTables:
         self._channel = np.arange(len(self.solved))
         self.floor = exported.floors[exported.floor]
         self.contact = ((exported.contacts[exported.floor][:, None] >> self._channel) & 1).astype(bool)
-        self.parted = PARTED[self.solved] * POSITION_SCALE
+        self.parted = PARTED[self.solved] * fixed.POSITION_SCALE
         self.ahead = _look_ahead(self.lags, len(exported.floors) > 1)
         self.stride = exported.search_stride
-        self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, LEAP,
+        self.chains = Chains(exported.emission_mean, exported.dense_transitions(), exported.initial, fixed.LEAP,
                              self.emission)
         self.knots = exported.pairs.shape[1]
 
@@ -154,8 +142,8 @@ class ExportedTables:
         first = int(model.first_component[phoneme])
         own = slice(first, first + int(model.component_count[phoneme]))
         distance = milliseconds - model.duration_mean[own]
-        z = np.minimum((np.abs(distance) * model.duration_gain[own]) >> 12, DURATION_Z_MAX)
-        cost = model.cost[own] + z_cost(z)
+        z = np.minimum((np.abs(distance) * model.duration_gain[own]) >> 12, fixed.DURATION_Z_MAX)
+        cost = model.cost[own] + fixed.z_cost(z)
         if model.contexts is not None:
             before, after = self.viseme_class[previous], self.viseme_class[following]
             cost = cost + 16 * (model.contexts[own, 0, before] + model.contexts[own, 1, after])
@@ -166,52 +154,52 @@ class ExportedTables:
             share = likelihood * 4096 // likelihood.sum()
         share[best] += 4096 - share.sum()
         deviation = (share * np.clip(np.where(distance < 0, -z, z), -136, 136)) >> 6
-        position = rounded_shift(((share @ model.shapes[own]) >> 4) * model.shape_scale, 16)
+        position = fixed.rounded_shift(((share @ model.shapes[own]) >> 4) * model.shape_scale, 16)
         if model.slopes is not None:
-            position = position + rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
-        position = np.repeat(np.clip(position, -POSITION_MAX, POSITION_MAX)[None], self.knots, axis=0)
+            position = position + fixed.rounded_shift(((deviation @ model.slopes[own]) >> 4) * model.slope_scale, 16)
+        position = np.repeat(np.clip(position, -fixed.POSITION_MAX, fixed.POSITION_MAX)[None], self.knots, axis=0)
         for key in (phoneme * 256 + previous, phoneme * 256 + 128 + following):
             row = int(np.searchsorted(model.pair_keys, key))
             if row < len(model.pair_keys) and model.pair_keys[row] == key:
-                added = rounded_shift(model.pairs[row] * model.pair_scale, 8)
-                position = np.clip(position + added, -POSITION_MAX, POSITION_MAX)
+                added = fixed.rounded_shift(model.pairs[row] * model.pair_scale, 8)
+                position = np.clip(position + added, -fixed.POSITION_MAX, fixed.POSITION_MAX)
         return position
 
     @staticmethod
     def interpolated(knots: np.ndarray, share: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.interpolated`."""
         share = np.floor(share[:, -1:] * 16384.0 + 1e-9).astype(np.int64)  # of the later knot, Q14
-        return knots[:, 0] + rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
+        return knots[:, 0] + fixed.rounded_shift((knots[:, -1] - knots[:, 0]) * share, 14)
 
     def targets(self, shapes: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
         """Like :meth:`FloatTables.targets`, in positions."""
         model = self.exported
         taps = np.arange(neighbours.shape[1])
-        added = rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
-        return np.clip(shapes + added, -POSITION_MAX, POSITION_MAX)
+        added = fixed.rounded_shift(model.kernels[neighbours, taps].sum(axis=1) * model.kernel_scale, 8)
+        return np.clip(shapes + added, -fixed.POSITION_MAX, fixed.POSITION_MAX)
 
     def emission(self, targets: np.ndarray, states: np.ndarray) -> np.ndarray:
         """(..., C, W) costs of states (..., C, W) for targets (..., C), in 1/32 nat."""
         model, own = self.exported, (self._channel[:, None], states)
         distance = np.abs(targets[..., None] - model.emission_mean[own])
-        z = np.minimum(short_gain_z(distance, model.emission_gain[own]), EMISSION_Z_MAX)
-        return z_cost(z) + model.emission_cost[own]
+        z = np.minimum(fixed.short_gain_z(distance, model.emission_gain[own]), fixed.EMISSION_Z_MAX)
+        return fixed.z_cost(z) + model.emission_cost[own]
 
     def search(self, targets: np.ndarray, ends: np.ndarray, lag: int = LAG, begin: int = 0,
-               searched: int = SEARCHED) -> np.ndarray:
+               searched: int = fixed.SEARCHED) -> np.ndarray:
         """As :meth:`FloatTables.search`."""
         return decode(self.chains, [targets], [ends], self.stride, lag=lag, begin=begin, searched=searched)[0]
 
     def equation(self, path: np.ndarray, targets: np.ndarray, contact: Optional[np.ndarray] = None) -> Equation:
         """Like :meth:`FloatTables.equation`; weights are the integers of the tables."""
         model, own = self.exported, (self._channel, path)
-        hold, share = weight_value(model.state_hold[own]), share_value(model.state_share[own]) / 256.0
-        moving = weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
+        hold, share = fixed.weight_value(model.state_hold[own]), fixed.share_value(model.state_share[own]) / 256.0
+        moving = fixed.weight_value(model.state_weight[own]) * np.array([4, 1])  # the tables hold a quarter of delta's
         return _in_contact(Equation(
             weight=np.concatenate([(hold * (1.0 - share))[..., None], moving], axis=-1),
             mean=model.means()[own] / 16.0 + np.array([1.0, 0.0, 0.0]) * (model.centre / 16.0)[:, None],
             anchor=hold * share, target=self.to_fap(targets)
-        ), contact, weight_value(model.firm))
+        ), contact, fixed.weight_value(model.firm))
 
     def complete(self, motion: np.ndarray) -> np.ndarray:
         """As :meth:`FloatTables.complete`; FAP 17 is the library's integers."""

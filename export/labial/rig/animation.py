@@ -76,10 +76,6 @@ def _arkit_name(column: str) -> str:
     return column[0].lower() + column[1:]
 
 
-def _fap_head(name: str, fps: int, count: int) -> str:
-    return f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {count}\n"
-
-
 #: Gives values by output for frames (n, 13), shares of their sounds (n, 15) if they are known, and the number of the
 #: first frame, like `outputs`.
 Mover = Callable[["np.ndarray", Optional["np.ndarray"], int], Dict[str, "np.ndarray"]]
@@ -107,10 +103,6 @@ def _fap_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     mask = " ".join("1" if fap in columns else "0" for fap in range(1, _FAPS + 1))
     for number, frame in enumerate(np.rint(frames).astype(int), first):
         out.write(f"{mask}\n{number} " + " ".join(str(frame[columns[fap]]) for fap in used) + "\n")
-
-
-def _live_link_head(name: str, fps: int, count: int) -> str:
-    return ",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n"
 
 
 def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
@@ -142,10 +134,6 @@ def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Op
                               rig.name: dict(zip(values, np.round(row, 3).tolist()))}, separators=(",", ":")) + "\n")
 
 
-def _no_head(name: str, fps: int, count: int) -> str:
-    return ""
-
-
 def _csv_head(name: str, fps: int, count: int) -> str:
     from labial.files.frames import CSV_HEAD
 
@@ -170,7 +158,7 @@ class Format(NamedTuple):
     #: second.
     rows: Callable[[TextIO, np.ndarray, int, int], None]
     #: The header, from the motion's name, frames per second and number of frames.
-    head: Callable[[str, int, int], str] = _no_head
+    head: Callable[[str, int, int], str] = lambda *_: ""
 
     def write(self, out: TextIO, parts: Iterable[np.ndarray], fps: int, name: str, count: int) -> None:
         """Writes a motion of `count` frames, which come in parts (n, 13) in FAP units."""
@@ -188,8 +176,10 @@ class Format(NamedTuple):
 #: Every format by its name, which ``--to`` takes.
 FORMATS: Dict[str, Format] = {
     "csv": Format("FAPs, a line per frame", _csv_rows, _csv_head),
-    "fap": Format("MPEG-4 text", _fap_rows, _fap_head),
-    "livelink": Format("Live Link Face CSV, ARKit's blendshapes", _live_link_rows, _live_link_head),
+    "fap": Format("MPEG-4 text", _fap_rows, lambda name, fps, count:
+                  f"2.1 {re.sub(r'[^0-9A-Za-z_.-]+', '_', name) or 'labial'} {fps} {count}\n"),
+    "livelink": Format("Live Link Face CSV, ARKit's blendshapes", _live_link_rows,
+                       lambda *_: ",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n"),
     "jsonl": Format("FAPs and ARKit's blendshapes, a line of JSON per frame", _json_rows),
     **{name: Format("weights alone, a line of JSON per frame", functools.partial(_weight_rows, name))
        for name in FACES},

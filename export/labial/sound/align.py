@@ -71,7 +71,8 @@ def phrases_of(text: str) -> List[List[str]]:
     strange: List[str] = []
     last = 0
     for match in _WORD.finditer(text):
-        word = _without_accents(match.group().lower().translate(_PLAIN))
+        plain = unicodedata.normalize("NFKD", match.group().lower().translate(_PLAIN))
+        word = "".join(c for c in plain if not unicodedata.combining(c))
         if not _LETTERS.fullmatch(word):
             strange.append(word)
         elif not phrases or _MARK.search(text, last, match.start()):
@@ -139,10 +140,6 @@ def _compound(word: str, lookup: Lookup) -> Optional[str]:
         if first and second:
             return f"{first} {second}"
     return None
-
-
-def _without_accents(word: str) -> str:
-    return "".join(c for c in unicodedata.normalize("NFKD", word) if not unicodedata.combining(c))
 
 
 Progress = Callable[[float, float], None]

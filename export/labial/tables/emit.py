@@ -14,18 +14,9 @@ from labial.errors import ModelError, PathLike
 from labial.files.c import block_comment, check_name, constants_of, rows
 from labial.files.faps import FAP_NAMES
 from labial.files.outputs import folder
+from labial.tables import layout
 from labial.tables.fixed import CONTACT_FRAMES
 from labial.tables.followers import solved
-from labial.tables.layout import (
-    Table,
-    blob,
-    channel_scalars,
-    channel_tables,
-    scalars,
-    shared_tables,
-    sources,
-    table_bytes,
-)
 from labial.tables.quantise import FORMAT, ExportedModel
 
 
@@ -34,7 +25,7 @@ def phoneme_constants(model: ExportedModel) -> List[str]:
     return constants_of(model.name, model.phonemes)
 
 
-def _table(table: Table) -> str:
+def _table(table: layout.Table) -> str:
     values = np.asarray(table.rows)
     if values.ndim == 1:
         body = rows(map(int, values))
@@ -92,7 +83,7 @@ enum {{
 {constants}
 }};
 
-/* The model, {sum(table_bytes(model).values())} bytes on a 32-bit target. */
+/* The model, {sum(layout.table_bytes(model).values())} bytes on a 32-bit target. */
 extern const labial_model_t {model.name};
 
 /* Its labels and aliases; linked only when used. */
@@ -109,20 +100,21 @@ extern const labial_names_t {model.name}_names;
 def source(model: ExportedModel) -> str:
     """NAME.c: the tables."""
     parts = [_comment(model, f"{model.name}.c - the"), f'#include "{model.name}.h"\n\n#include <stddef.h>\n\n']
-    tables = shared_tables(model)
+    tables = layout.shared_tables(model)
     parts.append("\n".join(_table(table) for table in tables if len(table.rows)))
     channels = []
     for k, channel in enumerate(solved(model.source)):
-        own = channel_tables(model, k)
+        own = layout.channel_tables(model, k)
         parts.append(f"\n/* {FAP_NAMES[channel]} */\n" + "".join(_table(table) for table in own))
-        *scales, motion, motion2, firm = map(str, channel_scalars(model, k))
+        *scales, motion, motion2, firm = map(str, layout.channel_scalars(model, k))
         members = [*scales, f"{{ {motion}, {motion2} }}", firm, *(table.name for table in own)]
         channels.append(f"    {{ {', '.join(members)} }}")
     parts.append(f"\nstatic const labial_channel_t channels[{len(channels)}] = {{\n" + ",\n".join(channels) + "\n};\n")
-    counts = [*scalars(model), ("floor_count", len(model.floors) - 1, ""), ("pair_knots", model.pairs.shape[1], ""),
-              ("pair_count", len(model.pair_keys), ""), ("channel_count", len(channels), "")]
+    counts = [*layout.scalars(model), ("floor_count", len(model.floors) - 1, ""),
+              ("pair_knots", model.pairs.shape[1], ""), ("pair_count", len(model.pair_keys), ""),
+              ("channel_count", len(channels), "")]
     members = [f"    {value}, /* {name} */" for name, value, _ in counts]
-    members.append(f"    {{ {', '.join(map(str, sources(model)))} }}, /* sources */")
+    members.append(f"    {{ {', '.join(map(str, layout.sources(model)))} }}, /* sources */")
     members += [f"    {table.name}," if len(table.rows) else f"    NULL, /* {table.name} */" for table in tables]
     parts.append(f"\nconst labial_model_t {model.name} = {{\n" + "\n".join(members) + "\n    channels\n};\n")
     return "".join(parts)
@@ -190,7 +182,7 @@ def write(model: ExportedModel, directory: PathLike, *, binary: bool = False) ->
     files = {f"{model.name}.h": header(model).encode(), f"{model.name}.c": source(model).encode(),
              f"{model.name}_names.c": names_source(model).encode()}
     if binary:
-        files[f"{model.name}.lbm"] = blob(model)
+        files[f"{model.name}.lbm"] = layout.blob(model)
     with folder(directory) as made:
         for file, data in files.items():
             (made / file).write_bytes(data)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import struct
 import zlib
 from dataclasses import dataclass
+from itertools import chain
 from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -159,14 +160,10 @@ def sources(model: ExportedModel) -> List[int]:
 def table_bytes(model: ExportedModel) -> Dict[str, int]:
     """Flash bytes of each group of tables on a 32-bit target, without names."""
     sizes: Dict[str, int] = {}
-    for table in _all_tables(model):
+    for table in chain(shared_tables(model), *(channel_tables(model, k) for k in range(len(model.centre)))):
         group = table.group or table.name
         sizes[group] = sizes.get(group, 0) + table.size
     return {**sizes, "descriptors": 32 * len(model.centre) + 84}
-
-
-def _all_tables(model: ExportedModel) -> List[Table]:
-    return shared_tables(model) + [table for k in range(len(model.centre)) for table in channel_tables(model, k)]
 
 
 def _padded(data: bytes) -> bytes:

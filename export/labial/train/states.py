@@ -135,7 +135,7 @@ def match_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequ
         log_transition=np.stack([
             transitions([item[viterbi.block_ends(len(item), tables.stride, k), k] for item in paths], size)
             for k in range(count)
-        ]))  # fmt: skip
+        ]))
 
 
 def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:

@@ -38,16 +38,8 @@ from labial.reference.contact import FRAMES
 from labial.reference.shape import Choice, ShapeTables, choose
 from labial.tables.followers import is_symmetric
 from labial.tables.model import Model, mean_pose, widened
+from labial.train import kernels
 from labial.train.expression import HALF, shared_gains
-from labial.train.kernels import (
-    PAIR_COUNT,
-    Kernels,
-    Penalties,
-    Regression,
-    code_of,
-    columns_alike,
-    targets_without_floors,
-)
 from labial.train.recordings import Recording, occurrences, recordings, with_pauses_cut
 from labial.train.workers import Workers
 
@@ -58,7 +50,7 @@ SHARED = 3.0
 LARGEST_VARIANCE = 1000.0
 #: Penalties with talkers, chosen on talkers left out. How one talker's slow phonemes differ from his fast ones, or what
 #: single neighbours add, carries over to others least; how a phoneme looks, and its peak, most.
-PENALTIES = Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
+PENALTIES = kernels.Penalties(smoothness=0.1, shape=5.0, slope=300.0, pair=40.0)
 #: Least occurrences of a pair with talkers: with 20 as without, the tables are larger and the motion no closer.
 PAIR_COUNT_SHARED = 25
 
@@ -69,14 +61,14 @@ def check_variance(variance: Optional[float]) -> None:
         raise LabialError(f"talker variance is {variance:g}, not above 0 and at most {LARGEST_VARIANCE:g}")
 
 
-def penalties_of(variance: Optional[float]) -> Penalties:
+def penalties_of(variance: Optional[float]) -> kernels.Penalties:
     """The penalties of a regression with talkers of this variance, or without talkers."""
-    return Penalties() if variance is None else PENALTIES
+    return kernels.Penalties() if variance is None else PENALTIES
 
 
 def pair_count_of(variance: Optional[float]) -> int:
     """The least occurrences of a pair with talkers of this variance, or without talkers."""
-    return PAIR_COUNT if variance is None else PAIR_COUNT_SHARED
+    return kernels.PAIR_COUNT if variance is None else PAIR_COUNT_SHARED
 
 
 def counted_once(item: Recording) -> Recording:
@@ -111,7 +103,7 @@ class Equations:
         return covariance[:, self.columns] @ np.linalg.solve(np.eye(len(own)) + self.normal @ own, left)
 
 
-def equations_of(asked: Regression, material: Sequence[Recording], choice: Choice,
+def equations_of(asked: kernels.Regression, material: Sequence[Recording], choice: Choice,
                  base: np.ndarray) -> Dict[int, Tuple[Equations, int]]:
     """By channel, for those that the talker of `material` teaches: his equations and which column of their right sides
     is the channel's."""
@@ -152,8 +144,8 @@ def weights_of(material: Sequence[Recording]) -> Dict[str, float]:
     return counts
 
 
-def fit_talkers(asked: Regression, material: Sequence[Recording], choice: Choice, variance: float,
-                counts: Optional[Mapping[str, float]] = None) -> Tuple[Kernels, Dict[str, Kernels]]:
+def fit_talkers(asked: kernels.Regression, material: Sequence[Recording], choice: Choice, variance: float,
+                counts: Optional[Mapping[str, float]] = None) -> Tuple[kernels.Kernels, Dict[str, kernels.Kernels]]:
     """What all talkers of `material` share, and each talker's own, by name; `choice` are the components of the
     material's occurrences, `variance` is v, `counts` says how much each talker counts for what they share."""
     base, prior = asked.base(material, choice), asked.prior()
@@ -164,7 +156,7 @@ def fit_talkers(asked: Regression, material: Sequence[Recording], choice: Choice
         each[talker] = equations_of(asked, [material[i] for i in chosen], _rows(material, choice, chosen), base)
     shared = np.zeros((len(prior), CHANNELS))
     own = {talker: np.zeros(shared.shape) for talker in each}
-    for channels in columns_alike(material):
+    for channels in kernels.columns_alike(material):
         first = int(channels[0])
         teachers = [talker for talker, equations in each.items() if first in equations]
         alone = len(teachers) == 1
@@ -226,23 +218,24 @@ def _material(model: Model, corpus: Sequence[Episode], about: Dict[str, np.ndarr
             for item in recordings(scaled, phone_set, model.fps)]
 
 
-def _deviation(model: Model, material: List[Recording], about: Dict[str, np.ndarray], order: np.ndarray) -> Kernels:
+def _deviation(model: Model, material: List[Recording], about: Dict[str, np.ndarray],
+               order: np.ndarray) -> kernels.Kernels:
     """The deviation to add to the model, which is not widened, with pairs in ascending `order` (R,)."""
     silence = model.phonemes.index(model.silence)
     key = model.pair_key[order]
     tables = ShapeTables(**{name: getattr(model, name) for name in ShapeTables.__dataclass_fields__})
-    shared = Kernels(model.kernel, model.kernel_lag, tables, key, model.pair_shape[order])
+    shared = kernels.Kernels(model.kernel, model.kernel_lag, tables, key, model.pair_shape[order])
     items = occurrences(material, PHONE_SETS[model.kind])
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    asked = Regression(tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps, model.kernel_lag,
-                       code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
-                       penalties_of(float(about["variance"])), model.pair_shape.shape[1])
-    made = targets_without_floors(choice, [shared] * len(material), material, silence)
+    asked = kernels.Regression(tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps,
+                               model.kernel_lag, kernels.code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
+                               penalties_of(float(about["variance"])), model.pair_shape.shape[1])
+    made = kernels.targets_without_floors(choice, [shared] * len(material), material, silence)
     left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
     covariance = covariance_of(asked.prior(), float(about["variance"]))
     zero = np.zeros((len(covariance), CHANNELS))
     own, equations = zero.copy(), equations_of(asked, left, choice, zero[0])
-    for channels in columns_alike(left):
+    for channels in kernels.columns_alike(left):
         if channels[0] in equations:
             own[:, channels] = deviation_of(equations, channels, covariance, zero)
     return asked.kernels(own, zero[0])
@@ -264,7 +257,8 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
     several talkers."""
     about = _known(model)
     material = _material(model, corpus, about)
-    order = np.argsort(code_of(model.pair_key[:, 0], model.pair_key[:, 1], model.pair_key[:, 2], len(model.phonemes)))
+    key = model.pair_key
+    order = np.argsort(kernels.code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)))
     with threadpool_limits(1):  # the same bits for any number of cores
         plain = widened(model, 1.0 / about["gain"], about["middle"], contacts=False)
         own = _deviation(plain, material, about, order)

@@ -18,7 +18,7 @@ _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": D
           # Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer.
           **dict(zip("\u037e\u0589\u05be\u05c3\u060c\u061b\u061f\u06d4\u0964\u0965\u104a\u104b\u1362\u1363\u17d4\u17d5",
                      "?.-.,;?...,..,..")),
-          **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789"))}  # fmt: skip
+          **dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789"))}
 _BLANKS = ((9, 13), (0x20, 0x20), (0x85, 0x85), (0xA0, 0xA0), (0x2000, 0x200A), (0x2028, 0x2029), (0x202F, 0x202F),
            (0x205F, 0x205F), (0x3000, 0x3000))
 _FOREIGN = ((0x180, 0x2FF), (0x370, 0x1FFF), (0x2C00, 0x2DFF), (0x3041, 0xD7FF), (0xF900, 0xFAFF), (0x20000, 0x3FFFF))
@@ -26,9 +26,9 @@ _MARKS = ((0x300, 0x36F), (0xAD, 0xAD), (0x200B, 0x200D), (0xFE00, 0xFE0F), (0xF
 #: Letters of U+00C0 to U+017F without their accents; a blank stands for a sign.
 _PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
           "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUu"
-          "UuUuUuWwYyYZzZzZzs")  # fmt: skip
+          "UuUuUuWwYyYZzZzZzs")
 _LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
-              "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}  # fmt: skip
+              "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}
 #: Fractions, which have blanks around them.
 _LIGATURES.update({sign: f" {number[0]}/{number[1]} " for sign, number in zip(
     "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())})
@@ -39,7 +39,7 @@ _ACCENTED = "`'^~:  ,`'^:`'^: ~`'^~:  `'^:'  "
 #: What accented letters sound like; ë like EH, and at the end of a word like IY.
 _SOUNDS: Dict[str, str] = {"a`": "AA", "a'": "AA", "a^": "AA", "c,": "S", "e`": "EH", "e'": "EY", "e^": "EH",
                            "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "n~": "N Y", "o'": "OW", "o^": "OW",
-                           "u'": "UW", "u^": "UW"}  # fmt: skip
+                           "u'": "UW", "u^": "UW"}
 
 
 class Simple(NamedTuple):

@@ -22,7 +22,7 @@ _SIGNS = "$" + signs.EURO + signs.POUND + signs.YEN + signs.RUPEE
 CURRENCIES = ("dollar_", "euro_", "pound_", "yen", "rupee_")
 _HUNDREDTHS = ("cent_", "cent_", "penny|pence", "", "paisa|paise")
 _LETTER_SCALES = {"k": "thousand", "m": "million", "mn": "million", "b": "billion", "bn": "billion", "t": "trillion",
-                  "tn": "trillion"}  # fmt: skip
+                  "tn": "trillion"}
 #: What ends a word: no letter and no digit.
 END = r"(?![A-Za-z0-9\1])"
 _WHOLE = re.compile(r"[0-9]+(?:,[0-9]{3}(?![0-9]))*")

@@ -132,7 +132,7 @@ def save(tables: WordTables, path: PathLike) -> None:
         "patch_label": np.array([label for item in patches for _, label in item], dtype=np.uint8),
         "words": np.frombuffer("\n".join(tables.exceptions).encode("ascii"), dtype=np.uint8),
         "about": np.frombuffer(about.encode("utf-8"), dtype=np.uint8),
-    }  # fmt: skip
+    }
     with writing(path) as file:
         np.savez_compressed(file, **content)  # type: ignore[arg-type]
 

@@ -50,7 +50,7 @@ _DOUBTFUL = "Jan Mar Mon Sat Sun".split()
 #: Words in short with a point, of which a number makes others, and such that mean others.
 _NUMBERED = {"no": "number", "nos": "numbers", "ca": "circa"}
 _SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "representative", "rev": "reverend",
-           "ft": "fort", "apt": "apartment", "fig": "figure"}  # fmt: skip
+           "ft": "fort", "apt": "apartment", "fig": "figure"}
 #: What is numbered: a letter that stands at such a number is no unit.
 _PLACES = frozenset("""seat seats row gate gates room apartment apt flat suite unit bus exit hall platform section track
     terminal locker fig figure chapter part""".split())

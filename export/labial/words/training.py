@@ -40,7 +40,7 @@ def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAV
     report(f"{tables.leaves} leaves, {len(tables.sounds)} labels, {len(found)} exceptions")
     about: Dict[str, Any] = {"entries": len(entries), "words": sum(entry.variant == 0 for entry in entries),
                              "not_aligned": sum(item is None for item in aligned), "leaves": leaves,
-                             "exceptions": exceptions}  # fmt: skip
+                             "exceptions": exceptions}
     multiplier = multiplier_for(list(found), (entry.word for entry in entries))
     return WordTables(tables.sounds, tables.first, tables.question, tables.yes, tables.no, tables.label, found,
                       multiplier, ATTRIBUTION, about)
@@ -67,7 +67,7 @@ def score(tables: WordTables, words: Dict[str, List[Tuple[int, ...]]]) -> Dict[s
         wrong_classes += min(_distance(seen, [classes[p] for p in other]) for other in known)
     return {"words": float(len(words)), "phonemes": 100 - 100 * wrong / size,
             "viseme classes": 100 - 100 * wrong_classes / size,
-            "whole words": 100 - 100 * wrong_words / len(words)}  # fmt: skip
+            "whole words": 100 - 100 * wrong_words / len(words)}
 
 
 def _distance(a: Sequence[int], b: Sequence[int]) -> int:
