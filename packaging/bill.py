@@ -27,22 +27,18 @@ def bill(tree: Path, packages: List[Path], moment: int) -> Item:
     files = [_file(path, version, contents[path.name]) for path in packages]
     components = [*files, *corpora, *_python_packages(tree)]
     name = "".join(item["hashes"][0]["content"] for item in files)
-    return {"bomFormat": "CycloneDX",
-            "specVersion": "1.5",
-            "serialNumber": f"urn:uuid:{uuid.uuid5(uuid.NAMESPACE_URL, name)}",
-            "version": 1,
-            "metadata": {"timestamp": datetime.fromtimestamp(moment, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-                         "component": {"type": "library",
-                                       "bom-ref": "labial",
-                                       "name": "labial",
-                                       "version": version,
-                                       "licenses": [{"expression": "MIT AND CC-BY-4.0 AND BSD-2-Clause"}]}},
-            "components": components,
-            "dependencies": [{"ref": "labial", "dependsOn": [item["bom-ref"] for item in corpora]},
-                             *({"ref": name,
-                                "dependsOn": [item["bom-ref"]
-                                              for item in corpora if _has(inside, item["name"])]} for name,
-                               inside in contents.items())]}
+    return {
+        "bomFormat": "CycloneDX", "specVersion": "1.5", "version": 1,
+        "serialNumber": f"urn:uuid:{uuid.uuid5(uuid.NAMESPACE_URL, name)}",
+        "metadata": {
+            "timestamp": datetime.fromtimestamp(moment, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+            "component": {"type": "library", "bom-ref": "labial", "name": "labial", "version": version,
+                          "licenses": [{"expression": "MIT AND CC-BY-4.0 AND BSD-2-Clause"}]}},
+        "components": components,
+        "dependencies": [
+            {"ref": "labial", "dependsOn": [item["bom-ref"] for item in corpora]},
+            *({"ref": name, "dependsOn": [item["bom-ref"] for item in corpora if _has(inside, item["name"])]}
+              for name, inside in contents.items())]}
 
 
 def _contents(package: Path) -> Dict[str, bytes]:

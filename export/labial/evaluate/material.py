@@ -223,7 +223,6 @@ def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
     if not talkers:
         raise LabialError("a talker is left out of a second corpus, but there is only one")
     further = range(first, len(corpus))
-    return [Split(number, tuple(range(first)),
-                  tuple(index for index in further if corpus[index].episode.source.talker == talker),
-                  added=tuple(index for index in further if corpus[index].episode.source.talker != talker),
+    own = {talker: tuple(i for i in further if corpus[i].episode.source.talker == talker) for talker in talkers}
+    return [Split(number, tuple(range(first)), own[talker], added=tuple(i for i in further if i not in own[talker]),
                   talker=talker) for number, talker in enumerate(talkers)]

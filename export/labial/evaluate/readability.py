@@ -147,8 +147,8 @@ class LipReader:
         self._classes = [found for found in tests if found]
 
     def _tokens(self, items: Sequence[Utterance], words: Sequence[str]) -> List[Token]:
-        return [Token(word, number, begin, end) for number, item in enumerate(items) for word, begin,
-                end in spoken(item, self._silence) if word in words and begin < end]
+        return [Token(word, number, begin, end) for number, item in enumerate(items)
+                for word, begin, end in spoken(item, self._silence) if word in words and begin < end]
 
     def _seen(self, motion: Sequence[np.ndarray], tokens: Sequence[Token]) -> np.ndarray:
         return np.stack([features(motion[item.utterance], item.begin, item.end, self._fps) for item in tokens])

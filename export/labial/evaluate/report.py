@@ -31,14 +31,13 @@ TABLE_1: Columns = [(name, f"diff/{name}") for name in (*PARAMETERS, "mean")]
 _FIRST: Columns = (("correlation", "correlation/mean"), ("amplitude", "amplitude/mean"))
 _LAST: Columns = (("jitter", "jitter"), ("seam, mean", "seam/mean"), ("seam, largest", "seam/largest"))
 #: The other measures, by kind.
-TABLE_2: Dict[str, Columns] = {"speech": [*_FIRST, ("closure", "closure/rate"), ("of human", "closure/of human"),
-                                          ("firm closure", "firm closure/rate"), ("of human", "firm closure/of human"),
-                                          ("readability", "readability"),
-                                          ("with residual", "readability/with residual"), *_LAST],
-                               "laughter": [*_FIRST, ("pulses seen", "pulses/seen"), ("of original", "pulses/of human"),
-                                            ("rise of pulses", "pulses/height"),
-                                            ("closure in ne, nasal", "closure/rate"),
-                                            ("of original", "closure/of human"), *_LAST]}
+TABLE_2: Dict[str, Columns] = {
+    "speech": [*_FIRST, ("closure", "closure/rate"), ("of human", "closure/of human"),
+               ("firm closure", "firm closure/rate"), ("of human", "firm closure/of human"),
+               ("readability", "readability"), ("with residual", "readability/with residual"), *_LAST],
+    "laughter": [*_FIRST, ("pulses seen", "pulses/seen"), ("of original", "pulses/of human"),
+                 ("rise of pulses", "pulses/height"), ("closure in ne, nasal", "closure/rate"),
+                 ("of original", "closure/of human"), *_LAST]}
 #: Correlation and amplitude, channel by channel.
 TABLE_3: Columns = [(f"{what} {name}", f"{what}/{name}")
                     for what in ("correlation", "amplitude") for name in JUDGED_NAMES]
@@ -226,10 +225,9 @@ def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Se
     methods = methods_of(outcomes)
     written = [folder / "report.md"]
     written[0].write_text(markdown(outcomes, options, plots), encoding="utf-8")
-    tables: Dict[str, Tuple[Sequence[str], Columns]] = {"table1": (methods, TABLE_1),
-                                                        "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
-                                                        "table3": (methods, TABLE_3),
-                                                        "table4": (methods, table_4(outcomes, options.kind))}
+    tables: Dict[str, Tuple[Sequence[str], Columns]] = {
+        "table1": (methods, TABLE_1), "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
+        "table3": (methods, TABLE_3), "table4": (methods, table_4(outcomes, options.kind))}
     suffix = "_synthetic.csv" if options.synthetic else ".csv"
     for name, (who, columns) in tables.items():
         written.append(folder / f"{name}{suffix}")

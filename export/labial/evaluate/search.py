@@ -77,9 +77,8 @@ def compare(tables: ExportedTables, streams: List[Stream], extent: np.ndarray) -
         for lag, searched in LIMITS:
             differ[lag, searched] += int((tables.search(target, ends, lag, searched=searched) != wanted).sum())
             moved[lag, searched].append(synthesise(tables, stream, whole=True, lag=lag, searched=searched) - motion)
-    return {limits: 100.0 * np.array([differ[limits] / total,
-                                      np.mean(np.sqrt(np.mean(np.concatenate(moved[limits]) ** 2, axis=0)) / extent)])
-            for limits in LIMITS}
+    far = {limits: np.sqrt(np.mean(np.concatenate(parts) ** 2, axis=0)) for limits, parts in moved.items()}
+    return {limits: 100.0 * np.array([differ[limits] / total, np.mean(far[limits] / extent)]) for limits in LIMITS}
 
 
 def main(arguments: Optional[List[str]] = None) -> int:

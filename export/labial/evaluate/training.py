@@ -109,11 +109,10 @@ class Training:
         """The model of `method` ("paper" or "labial") trained on this part, as :func:`labial.train.train` does it."""
         key = method, normalise
         if key not in self._models:
-            self._models[key] = train([*(item.episode for item in self.utterances),
-                                       *(self.added if method == "labial" else ())], kind=self.phone_set.kind,
+            added, variance = (self.added, self.talker_variance) if method == "labial" else ([], None)
+            self._models[key] = train([*(item.episode for item in self.utterances), *added], kind=self.phone_set.kind,
                                       method=method, fps=self.fps, seed=self.seed, jobs=1, progress=False,
-                                      divide=self.divide, normalise=normalise,
-                                      talker_variance=self.talker_variance if method == "labial" else None)
+                                      divide=self.divide, normalise=normalise, talker_variance=variance)
         return self._models[key]
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:

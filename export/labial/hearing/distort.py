@@ -64,13 +64,11 @@ def drawn(random: np.random.Generator) -> Distortion:
     kind = random.random(9)
     return Distortion(speed=speed, peak=peak, decay=float(random.uniform(0.1, 0.6)) if kind[0] < 0.45 else 0.0,
                       dry=float(random.uniform(0.7, 2.5)),
-                      band=(float(random.uniform(50, 350)),
-                            float(random.uniform(3300, 7000))) if kind[1] < 0.4 else None,
+                      band=tuple(random.uniform((50, 3300), (350, 7000)).tolist()) if kind[1] < 0.4 else None,
                       rumble=float(np.exp(random.uniform(*np.log((0.02, 1.5))))) if kind[2] < 0.25 else 0.0,
                       clip=float(random.uniform(0.005, 0.08)) if kind[3] < 0.2 else 0.0, companded=bool(kind[4] < 0.25),
                       offset=float(random.uniform(-0.3, 0.3)) if kind[5] < 0.2 else 0.0,
-                      echo=(float(random.uniform(0.0004, 0.008)),
-                            float(random.uniform(0.2, 0.8))) if kind[6] < 0.3 else (0.0, 0.0),
+                      echo=tuple(random.uniform((0.0004, 0.2), (0.008, 0.8)).tolist()) if kind[6] < 0.3 else (0.0, 0.0),
                       evening=float(random.uniform(0.2, 0.7)) if kind[7] < 0.25 else 0.0,
                       codec=str(random.choice(list(CODECS))) if kind[8] < 0.35 else "")
 

@@ -17,8 +17,8 @@ def shares(phonemes: Sequence[Tuple[str, int]], fps: int, count: int) -> np.ndar
     """(count, 15) the share of each of `VISEMES` in each frame, 0 .. 1, of ARPABET phonemes and their milliseconds;
     labels that are no phonemes of speech, such as those of laughter, are silence. In frames beyond the last the face
     comes to rest."""
-    spoken = [label for (label, _),
-              frames in zip(phonemes, frame_counts([ms for _, ms in phonemes], fps)) for _ in range(frames)]
+    spoken = [label for (label, _), frames in zip(phonemes, frame_counts([ms for _, ms in phonemes], fps))
+              for _ in range(frames)]
     known = min(len(spoken), count)
     spoken = [*spoken, *["SIL"] * count][:count]
     sounds = np.array([-1 if label == "HH" else _PLACE[VISEME_OF.get(label, "sil")] for label in spoken], dtype=int)

@@ -180,35 +180,14 @@ void loop()
         return;
     }}
     switch (command) {{
-    case '+':
-        move(chosen, pulses[chosen] + 10);
-        break;
-    case '-':
-        move(chosen, pulses[chosen] - 10);
-        break;
-    case '>':
-        move(chosen, pulses[chosen] + 1);
-        break;
-    case '<':
-        move(chosen, pulses[chosen] - 1);
+    case '+': case '-': case '>': case '<':
+        move(chosen, pulses[chosen] + (command == '+' ? 10 : command == '-' ? -10 : command == '>' ? 1 : -1));
         break;
     case 'g':
         move(chosen, found[chosen][0] != 0 ? found[chosen][0] : firsts[chosen]);
         break;
-    case 'n':
-        keep(0);
-        break;
-    case 'c':
-        keep(1);
-        break;
-    case 'f':
-        keep(2);
-        break;
-    case 'l':
-        keep(3);
-        break;
-    case 'h':
-        keep(4);
+    case 'n': case 'c': case 'f': case 'l': case 'h':
+        keep(command == 'n' ? 0 : command == 'c' ? 1 : command == 'f' ? 2 : command == 'l' ? 3 : 4);
         break;
     case 'm':
         opening = 0;

@@ -159,14 +159,11 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
             columns[own] = np.round(columns.get(own, 0.0) + share * weights[name], 3)
     away = b'"VRM"' in content[:65536] and b"VRMC_vrm" not in content  # VRM 0 faces the other way
     facing = -1.0 if away else 1.0
-    data: Dict[str, Any] = {"title": title or motion.name,
-                            "fps": fps,
-                            "start": round(float(motion.times[0]), 6),
-                            "shapes": list(columns),
-                            "weights": np.stack(list(columns.values()), axis=1).tolist(),
-                            "corners": [(found.head.rest[corner] / found.scale * (facing, 1.0, facing)).tolist()
-                                        for corner in ("corner_left", "corner_right")],
-                            "facing": facing,
-                            "head": base64.b64encode(content).decode("ascii")}
+    corners = [(found.head.rest[corner] / found.scale * (facing, 1.0, facing)).tolist()
+               for corner in ("corner_left", "corner_right")]
+    data: Dict[str, Any] = {
+        "title": title or motion.name, "fps": fps, "start": round(float(motion.times[0]), 6), "shapes": list(columns),
+        "weights": np.stack(list(columns.values()), axis=1).tolist(), "corners": corners, "facing": facing,
+        "head": base64.b64encode(content).decode("ascii")}
     page = HEAD_PLAYER.read_text(encoding="utf-8").replace("@LABIAL_DATA@", script_data(data, audio))
     return page.replace("@LABIAL_IMPORTS@", _imports(find_three(three)))

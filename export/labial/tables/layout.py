@@ -133,18 +133,12 @@ def channel_scalars(model: ExportedModel, channel: int) -> List[int]:
 
 def scalars(model: ExportedModel) -> List[Tuple[str, int, str]]:
     """Name, value and layout of the first members of ``labial_model_t`` and of the binary form."""
-    values = [("format", FORMAT, "H"),
-              ("frames_per_second", model.fps, "H"),
-              ("component_count", len(model.cost), "H"),
-              ("phoneme_count", len(model.phonemes), "B"),
-              ("class_count", len(model.classes), "B"),
+    values = [("format", FORMAT, "H"), ("frames_per_second", model.fps, "H"), ("component_count", len(model.cost), "H"),
+              ("phoneme_count", len(model.phonemes), "B"), ("class_count", len(model.classes), "B"),
               ("state_count", model.transitions.shape[1], "B"),
-              ("predecessor_fours", model.transitions.shape[2] // 4, "B"),
-              ("search_stride", model.search_stride, "B"),
-              ("silence", model.silence, "B"),
-              ("mixture_mean", int(model.soft), "B"),
-              ("kernel_taps", model.kernels.shape[1], "B"),
-              ("kernel_stride", model.kernel_stride, "B"),
+              ("predecessor_fours", model.transitions.shape[2] // 4, "B"), ("search_stride", model.search_stride, "B"),
+              ("silence", model.silence, "B"), ("mixture_mean", int(model.soft), "B"),
+              ("kernel_taps", model.kernels.shape[1], "B"), ("kernel_stride", model.kernel_stride, "B"),
               ("kernel_behind", model.kernel_behind, "B")]
     for name, value, code in values:
         check_fits(name, code, np.array([value]))

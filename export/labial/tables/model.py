@@ -179,33 +179,15 @@ def _shapes(model: Model) -> Dict[str, Tuple[int, ...]]:
     computed = len(model.protrusion)
     expect(computed in (0, VALUES), f"protrusion has {computed} values, not {VALUES}")
     expect(knots in (1, 2), f"pair_shape has shape {np.shape(model.pair_shape)}, not one or two knots")
-    return {"viseme_class": (p,),
-            "boundary": (p,),
-            "component_count": (p,),
-            "log_weight": (n,),
-            "duration_mean": (n,),
-            "duration_variance": (n,),
-            "shape": (n, CHANNELS),
-            "slope": (n, CHANNELS),
-            "log_previous": (n, context),
-            "log_next": (n, context),
-            "kernel": (p, taps, CHANNELS),
-            "kernel_lag": (taps,),
-            "pair_key": (pairs, 3),
-            "pair_shape": (pairs, knots, CHANNELS),
-            "floor": (p, CHANNELS),
-            "contact": (p, CHANNELS),
-            "firm": (CHANNELS,),
-            "emission_mean": (CHANNELS, q),
-            "emission_variance": (CHANNELS, q),
-            "state_mean": (CHANNELS, q, 3),
-            "state_precision": (CHANNELS, q, 3),
-            "state_anchor": (CHANNELS, q),
-            "log_transition": (CHANNELS, q, q),
-            "log_initial": (CHANNELS, q),
-            "protrusion": (computed,),
-            "protrusion_range": (2 if computed else 0,),
-            "source": (CHANNELS,)}
+    per_state, per_component = (CHANNELS, q), (n, CHANNELS)
+    return {"viseme_class": (p,), "boundary": (p,), "component_count": (p,), "log_weight": (n,), "duration_mean": (n,),
+            "duration_variance": (n,), "shape": per_component, "slope": per_component, "log_previous": (n, context),
+            "log_next": (n, context), "kernel": (p, taps, CHANNELS), "kernel_lag": (taps,), "pair_key": (pairs, 3),
+            "pair_shape": (pairs, knots, CHANNELS), "floor": (p, CHANNELS), "contact": (p, CHANNELS),
+            "firm": (CHANNELS,), "emission_mean": per_state, "emission_variance": per_state,
+            "state_mean": (*per_state, 3), "state_precision": (*per_state, 3), "state_anchor": per_state,
+            "log_transition": (*per_state, q), "log_initial": per_state, "protrusion": (computed,),
+            "protrusion_range": (2 if computed else 0,), "source": (CHANNELS,)}
 
 
 def _check_values(name: str, value: np.ndarray) -> None:

@@ -205,8 +205,7 @@ def _setting(kind: str, method: str, fps: int, codebook: Optional[int], componen
         raise LabialError(f"method is {method!r}, not one of {', '.join(METHODS)}")
     usual = SIZES[kind] if method == "labial" else (CODEBOOK, COMPONENTS)
     codebook, components = (own if given is None else given for given, own in zip((codebook, components), usual))
-    for name, value, most in (("fps", fps, 250),
-                              ("codebook", codebook, LIMITS["states"]),
+    for name, value, most in (("fps", fps, 250), ("codebook", codebook, LIMITS["states"]),
                               ("components", components, LIMITS["components"]),
                               ("search stride", search_stride, LIMITS["stride"])):
         if not 1 <= value <= most:
@@ -352,15 +351,11 @@ def _fit_solved(setting: _Setting, material: Sequence[Recording], shaped: _Shape
 
 def _training(setting: _Setting, material: Sequence[Recording], counts: np.ndarray, plan: Plan) -> Dict[str, object]:
     """The model's record of its training."""
-    training: Dict[str, object] = {**_extent(material, setting.silence),
-                                   "codebook": setting.codebook,
-                                   "components": setting.components,
-                                   "seed": setting.seed,
-                                   "episodes": len(material),
-                                   "frames": int(sum(len(item.frames) for item in material)),
-                                   "occurrences": {label: int(count) for label,
-                                                   count in zip(setting.phone_set.phonemes, counts)},
-                                   "pooled": dict(plan.pooled)}
+    occurring = {label: int(count) for label, count in zip(setting.phone_set.phonemes, counts)}
+    training: Dict[str, object] = {
+        **_extent(material, setting.silence), "codebook": setting.codebook, "components": setting.components,
+        "seed": setting.seed, "episodes": len(material), "frames": int(sum(len(item.frames) for item in material)),
+        "occurrences": occurring, "pooled": dict(plan.pooled)}
     if setting.extended:
         training.update(penalties=asdict(setting.penalties), scales=asdict(setting.scales),
                         look_ahead=setting.look_ahead)
