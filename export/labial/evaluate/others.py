@@ -14,7 +14,6 @@ are judged by the same lips.
 from __future__ import annotations
 
 import shutil
-import subprocess
 from functools import cache
 from pathlib import Path
 from typing import Callable, Dict, Optional
@@ -25,6 +24,7 @@ import soxr
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, PathLike, apt, missing, needs
 from labial.files.faps import CHANNELS
+from labial.hearing import voices
 from labial.hearing.features import RATE, frames_of
 from labial.hearing.targets import FRAME_MS, closure, durations, frames
 from labial.sound.samples import prepared
@@ -40,8 +40,6 @@ PACKAGES: Dict[str, str] = {"wawa-lipsync": "wawa-lipsync", "wawa-lipsync unsmoo
 BROWSER_RATE, BLOCK, PER_SECOND = 48000, 128, 60
 #: Samples that the AnalyserNode looks at, the share of what it reported before, dB of its levels 0 and 255.
 FFT, SMOOTHING, QUIET, LOUD = 2048, 0.8, -100.0, -30.0
-#: Seconds that node may take for a sound.
-_PATIENCE = 300
 
 
 def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndarray]:
@@ -97,14 +95,8 @@ def run(node: str, package: str, modules: Path, given: bytes) -> np.ndarray:
     """(K, ways, visemes) weights, `PER_SECOND` rows a second, that a package makes of what it hears. Raises LabialError
     if it fails."""
     command = [node, str(Path(__file__).with_suffix(".mjs")), package, str(modules), ",".join(VISEMES)]
-    try:
-        done = subprocess.run(command, input=given, capture_output=True, timeout=_PATIENCE, check=False)
-    except subprocess.TimeoutExpired:
-        raise LabialError(f"{package} took more than {_PATIENCE} s") from None
-    if done.returncode != 0:
-        raise LabialError(f"{package} failed: {done.stderr.decode('utf-8', 'replace').strip()[-300:]}")
     ways = 2 if package == "wawa-lipsync" else 1
-    return np.frombuffer(done.stdout, "<f4").reshape(-1, ways, len(VISEMES))
+    return np.frombuffer(voices.run(package, command, given), "<f4").reshape(-1, ways, len(VISEMES))
 
 
 # ---- Weights to frames

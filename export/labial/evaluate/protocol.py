@@ -9,12 +9,10 @@ the same corpus, options and versions; the folder is removed when the report is 
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
 import shutil
 import warnings
-import zipfile
 from contextlib import suppress
 from dataclasses import astuple, replace
 from pathlib import Path
@@ -42,8 +40,7 @@ from labial.evaluate.measures import Judge, has_pulses, judged_frames, longest_t
 from labial.evaluate.methods import predict_all, select
 from labial.evaluate.readability import LipReader
 from labial.evaluate.training import Training
-from labial.files.arrays import array, read_zip
-from labial.files.outputs import writing
+from labial.files.arrays import array, read_zip, write_model
 from labial.train.workers import Workers, versions
 
 #: Their folder in the report's folder.
@@ -64,7 +61,7 @@ class Kept:
         """The stored split, or None."""
         try:
             members = read_zip(self._path(split), None, _LARGEST)
-            about = json.loads(members["outcome.json"])
+            about = json.loads(json.loads(members["model.json"])["outcome"])
             if about["of"] != self._of or about["split"] != json.loads(json.dumps(astuple(split))):
                 return None
             outcome = Outcome(split, about["frames"], about["measures"], about["seconds"])
@@ -91,12 +88,7 @@ class Kept:
             arrays = {"steps": example.steps, **{str(n): item for n, item in enumerate(example.motion.values())}}
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            with writing(self._path(outcome.split)) as file, zipfile.ZipFile(file, "w") as archive:
-                archive.writestr("outcome.json", json.dumps(about))
-                for name, values in arrays.items():
-                    buffer = io.BytesIO()
-                    np.lib.format.write_array(buffer, np.ascontiguousarray(values), allow_pickle=False)
-                    archive.writestr(f"{name}.npy", buffer.getvalue())
+            write_model(self._path(outcome.split), {"outcome": json.dumps(about)}, arrays.items())
         except (OSError, LabialError) as error:
             warnings.warn(f"split {outcome.split.number} is not kept for another start: {error}", stacklevel=1)
 

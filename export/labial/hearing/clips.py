@@ -17,7 +17,7 @@ import warnings
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, TypeVar
 
 from labial.corpus.episode import Segment
 from labial.corpus.formats import SOUNDS, read_timings, suffixes
@@ -127,7 +127,7 @@ def read(folder: PathLike, cache: PathLike, jobs: int = 1,
         with needs("aligning sounds with their texts", "hear"):
             import labial.sound.align  # noqa: F401
         os.makedirs(cache, exist_ok=True)
-    for count, problem in enumerate(_aligned(missing, jobs), len(work) - len(missing) + 1):
+    for count, problem in enumerate(in_processes(_align, missing, jobs), len(work) - len(missing) + 1):
         if problem:
             warnings.warn(f"{problem}; it is left out", stacklevel=2)
         if told:
@@ -139,6 +139,8 @@ def read(folder: PathLike, cache: PathLike, jobs: int = 1,
 
 
 _Row = Tuple[str, Told, str]
+Item = TypeVar("Item")
+Found = TypeVar("Found")
 
 
 def _clip(row: _Row) -> Optional[Clip]:
@@ -156,12 +158,13 @@ def _kept(cache: PathLike, sound: str, item: Told) -> str:
     return os.path.join(cache, f"{Path(sound).stem}.{hashlib.sha256(key.encode('utf-8')).hexdigest()[:12]}.lab")
 
 
-def _aligned(rows: Sequence[_Row], jobs: int) -> Iterable[str]:
-    if jobs == 1 or len(rows) < 2:
-        yield from map(_align, rows)
+def in_processes(work: Callable[[Item], Found], items: Sequence[Item], jobs: int, chunk: int = 1) -> Iterator[Found]:
+    """What `work` makes of each item, in order, in `jobs` processes."""
+    if jobs == 1 or len(items) < 2:
+        yield from map(work, items)
         return
     with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(_align, rows)
+        yield from pool.map(work, items, chunksize=chunk)
 
 
 def _align(row: _Row) -> str:

@@ -16,11 +16,10 @@ import hashlib
 import json
 import os
 import zlib
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Callable, Iterable, List, Optional, Sequence, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -30,7 +29,7 @@ from labial.errors import PathLike, needs
 from labial.files.faps import CHANNELS
 from labial.files.outputs import writing
 from labial.hearing import targets
-from labial.hearing.clips import Clip
+from labial.hearing.clips import Clip, in_processes
 from labial.hearing.distort import Distortion, distorted, drawn
 from labial.hearing.features import BANDS, HOPS, RATE, frames_of, log_energies, normalise
 from labial.hearing.model import CLASSES, CLOSED, HearingModel
@@ -84,7 +83,8 @@ def prepare(clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs:
         import labial.sound.samples  # noqa: F401
     rows: List[Tuple[np.ndarray, np.ndarray, np.ndarray]] = []
     held: List[bool] = []
-    for count, found in enumerate(_prepared(clips, takes, seed, jobs), 1):
+    each = partial(prepare_clip, takes=takes, seed=seed)
+    for count, found in enumerate(in_processes(each, clips, jobs, 8), 1):
         rows += found
         held += [is_held(clips[count - 1].sound)] * len(found)
         if told:
@@ -95,15 +95,6 @@ def prepare(clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs:
     with writing(path) as out:
         np.savez(out, energies=energies, frames=frames, classes=classes, lengths=result.lengths, held=result.held)
     return result
-
-
-def _prepared(clips: Sequence[Clip], takes: int, seed: int, jobs: int) -> Iterable[List[_Take]]:
-    each = partial(prepare_clip, takes=takes, seed=seed)
-    if jobs == 1:
-        yield from map(each, clips)
-        return
-    with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(each, clips, chunksize=8)
 
 
 _Take = Tuple[np.ndarray, np.ndarray, np.ndarray]

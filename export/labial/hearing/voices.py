@@ -186,7 +186,7 @@ def speak(voice: str, texts: Sequence[str], pace: float = 1.0, pitch: float = 1.
 
 def _flite(name: str, texts: Sequence[str], pace: float, pitch: float) -> Iterator[Spoken]:
     program = _program("flite")
-    known = _run([program, "-lv"]).partition(":")[2].split()
+    known = _said([program, "-lv"]).partition(":")[2].split()
     if name not in known:  # flite would speak with another voice
         raise LabialError(f"flite has no voice {name!r}; it has {' '.join(known)}")
     own = {"kal": 95.0, "kal16": 95.0}.get(name)
@@ -194,7 +194,7 @@ def _flite(name: str, texts: Sequence[str], pace: float, pitch: float) -> Iterat
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "said.wav")
         for text in texts:
-            said = _run([program, "-voice", name, "--setf", f"duration_stretch={1 / pace:.6f}", *height, "-psdur",
+            said = _said([program, "-voice", name, "--setf", f"duration_stretch={1 / pace:.6f}", *height, "-psdur",
                          "-t", text, "-o", path])
             rows = [item.rpartition(":") for item in said.split()]
             yield _spoken(f"flite:{name}", text, path, [(float(end), label) for label, _, end in rows])
@@ -213,7 +213,7 @@ def _festival(name: str, texts: Sequence[str], pace: float, pitch: float) -> Ite
                       f'(utt.save.segs said "{folder}/{number}.segs")']
         script = Path(folder, "say.scm")
         script.write_text("\n".join(lines) + "\n", "utf-8")
-        _run([program, "-b", str(script)])
+        _said([program, "-b", str(script)])
         for number, text in enumerate(texts):
             try:
                 segs = Path(folder, f"{number}.segs").read_text("utf-8")
@@ -246,16 +246,20 @@ def _program(name: str) -> str:
     return found
 
 
-def _run(command: List[str]) -> str:
-    """The standard output of a program that must succeed."""
+def run(name: str, command: List[str], given: bytes = b"") -> bytes:
+    """The standard output of a program that must succeed, which is called `name` in errors; `given` is its input."""
     try:
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, timeout=_PATIENCE, check=False)
+        done = subprocess.run(command, input=given, capture_output=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        raise LabialError(f"{command[0]} took more than {_PATIENCE} s") from None
+        raise LabialError(f"{name} took more than {_PATIENCE} s") from None
     told = done.stderr.decode("utf-8", "replace").strip()
     if done.returncode != 0:
-        raise LabialError(f"{command[0]} failed: {told[-300:] or f'exit status {done.returncode}'}")
-    return done.stdout.decode("utf-8", "replace")
+        raise LabialError(f"{name} failed: {told[-300:] or f'exit status {done.returncode}'}")
+    return done.stdout
+
+
+def _said(command: List[str]) -> str:
+    return run(command[0], command).decode("utf-8", "replace")
 
 
 def _spoken(voice: str, text: str, path: str, ends: Sequence[Tuple[float, str]]) -> Spoken:
