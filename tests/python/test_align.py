@@ -92,11 +92,11 @@ def test_long_sounds_go_piece_by_piece(tmp_path: Path, monkeypatch: pytest.Monke
     samples = np.concatenate([soundfile.read(part)[0] for part in parts] * 2)
     soundfile.write(tmp_path / "long.wav", samples, RATE)
     text = " ".join(TEXTS * 2)
-    whole = module.align(tmp_path / "long.wav", text)
+    whole = module.aligned(tmp_path / "long.wav", text).segments
     told: List[Tuple[float, float]] = []
     monkeypatch.setattr(module, "LONGEST_PIECE", 6.0)
     monkeypatch.setattr(module, "OVERLAP", 1.5)
-    cut = module.align(tmp_path / "long.wav", text, lambda done, length: told.append((done, length)))
+    cut = module.aligned(tmp_path / "long.wav", text, lambda done, length: told.append((done, length))).segments
     assert len(told) >= 4 and told[-1][0] == told[-1][1] == pytest.approx(len(samples) / RATE)
     moments = np.arange(0, told[-1][1], 0.01)
     at = [np.array([item.label for item in found])[np.searchsorted([item.end for item in found], moments)]
@@ -114,7 +114,7 @@ def test_any_rate_and_channels(tmp_path: Path) -> None:
     soundfile.write(tmp_path / "b.flac", np.stack([raised, 0.5 * raised], axis=1), 44100)
     ends = []
     for path in (sound, tmp_path / "b.flac"):
-        found = module.align(path, TEXTS[0])
+        found = module.aligned(path, TEXTS[0]).segments
         ends.append([item.end for item in found if item.label != "SIL"])
     assert np.abs(np.array(ends[0]) - np.array(ends[1])).max() <= 0.03
     assert len(read_sound(tmp_path / "b.flac")) == pytest.approx(len(samples), abs=2)
@@ -139,7 +139,7 @@ def test_what_is_no_speech_is_told(tmp_path: Path) -> None:
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 try:
-                    found = module.align(path, text)
+                    found = module.aligned(path, text).segments
                 except DataError as error:
                     assert "does not fit" in str(error)
                     continue
@@ -154,17 +154,17 @@ def test_text_of_another_sound(tmp_path: Path) -> None:
     sound, _ = speech("flite", tmp_path, TEXTS[0])
     for text in (TEXTS[2], "Hello."):
         with pytest.warns(UserWarning, match="does not fit the sound"):
-            module.align(sound, text)
+            module.aligned(sound, text)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        module.align(sound, TEXTS[0])
+        module.aligned(sound, TEXTS[0])
 
 
 @pytest.mark.parametrize("text", ["", " . , !", "it is 1984", "Привет"])
 def test_texts_that_are_none(text: str, tmp_path: Path) -> None:
     soundfile.write(tmp_path / "a.wav", np.zeros(RATE), RATE)
     with pytest.raises(LabialError, match="text"):
-        module.align(tmp_path / "a.wav", text)
+        module.aligned(tmp_path / "a.wav", text)
 
 
 def test_bad_files(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
@@ -333,9 +333,10 @@ def test_confidence_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> No
 def test_a_sentence_too_many_is_left_out(tmp_path: Path) -> None:
     """It failed the whole. What is there is aligned as without it."""
     path = spoken(tmp_path)
-    expected = module.align(path, " ".join(TEXTS))
+    expected = module.aligned(path, " ".join(TEXTS)).segments
     with pytest.warns(UserWarning, match="goes on behind the sound"):
-        found = module.align(path, " ".join(TEXTS) + " And after that nobody ever came back to this house again.")
+        text = " ".join(TEXTS) + " And after that nobody ever came back to this house again."
+        found = module.aligned(path, text).segments
     moments = np.arange(0, expected[-1].end, 0.01)
     at = [np.array([item.label for item in each])[np.searchsorted([item.end for item in each], moments)]
           for each in (expected, found)]

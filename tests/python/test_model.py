@@ -16,6 +16,7 @@ from labial.evaluate.check import FRAMES, Comparison, device_frames
 from labial.evaluate.loss import workspace_bytes
 from labial.files.faps import CHANNELS
 from labial.tables import emit
+from labial.tables.layout import table_bytes
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
 from models import archive, members_of, random_model, streams, without_floors
@@ -192,7 +193,7 @@ int main(void)
         return (head + 3) // 4 * 4 + 4 * pointers
 
     descriptors = len(model.centre) * on_32_bits(channel_head, channel_pointers) + on_32_bits(head, pointers)
-    assert emit.table_bytes(model)["descriptors"] == descriptors
+    assert table_bytes(model)["descriptors"] == descriptors
 
 
 # ---- The model file --------------------------------------------------------------------------------------------------

@@ -21,7 +21,6 @@ from labial.hearing.quantise import FORMAT, Dense, HearingTables
 _MODEL, _BLOCK = 60, 24
 #: LABIAL_HEAR_UNITS_MAX by default.
 _UNITS_MAX = 128
-_BYTES = {"int8_t": 1, "uint8_t": 1, "int16_t": 2, "uint16_t": 2}
 
 
 def _array(kind: str, name: str, values: Iterable[int]) -> str:

@@ -188,11 +188,6 @@ class Alignment:
         return lab_of(self.segments) + comments(self.stretches)
 
 
-def align(path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None) -> Tuple[Segment, ...]:
-    """The segments of :func:`aligned`."""
-    return aligned(path, text, progress).segments
-
-
 def aligned(path: PathLike, text: Optional[str] = None, progress: Optional[Progress] = None) -> Alignment:
     """English phonemes of a sound file. `text` is its text; without it the most probable words are searched. `progress`
     receives the processed seconds. Warns of words with guessed pronunciations, of a text that does not fit the sound or
