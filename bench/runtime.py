@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import time
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 import labial
 
@@ -26,23 +26,17 @@ def rendered(timings: List[Tuple[str, int]]) -> int:
     return len(labial.render(timings, exact=True))
 
 
-def one_by_one(timings: List[Tuple[str, int]]) -> int:
-    """Frames of an utterance, each a :class:`labial.Frame`."""
+def one_by_one(timings: List[Tuple[str, int]], face: Optional[labial.Rig] = None) -> int:
+    """Frames of an utterance, each a :class:`labial.Frame`, and the outputs of a `face`."""
     with labial.Stream() as stream:
         for phoneme, milliseconds in timings:
             stream.push(phoneme, milliseconds)
         stream.end()
-        return sum(1 for _ in stream)
+        return sum(1 for frame in stream if face is None or frame.rig(face))
 
 
 def rigged(timings: List[Tuple[str, int]]) -> int:
-    """The same, with ARKit's blendshapes of each frame."""
-    face = labial.Rig("arkit")
-    with labial.Stream() as stream:
-        for phoneme, milliseconds in timings:
-            stream.push(phoneme, milliseconds)
-        stream.end()
-        return sum(1 for frame in stream if frame.rig(face))
+    return one_by_one(timings, labial.Rig("arkit"))
 
 
 def microseconds(way: Callable[[List[Tuple[str, int]]], int]) -> float:

@@ -105,20 +105,16 @@ def measure(bench: Bench, board: Board) -> None:
                       [*shown, "#", "members", "of", "libgcc.a", "that", "these", "link"], tool_version)
         command = compile_command(bench, board, "-Os")
         _face(bench, board, command, Path(scratch), tool_version)
-        for model, stem in MODELS.items():
-            for figure, name in ((f"{model}: model", f"{stem}.c"), (f"{model}: names", f"{stem}_names.c")):
-                path = bench.source / "lib" / "models" / name
-                run([*command, path, "-o", out])
-                found = sections(size, out)
-                variables += found["data"] + found["bss"]
-                bench.add(board.preset, figure, found["text"], "bytes",
-                          [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
-        path = bench.source / "lib" / "words" / "words_en.c"
-        run([*command, path, "-o", out])
-        found = sections(size, out)
-        variables += found["data"] + found["bss"]
-        bench.add(board.preset, "words: tables", found["text"], "bytes",
-                  [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
+        tables = {f"{model}: {kind}": f"models/{stem}{end}.c" for model, stem in MODELS.items()
+                  for kind, end in (("model", ""), ("names", "_names"))}
+        tables["words: tables"] = "words/words_en.c"
+        for figure, name in tables.items():
+            path = bench.source / "lib" / name
+            run([*command, path, "-o", out])
+            found = sections(size, out)
+            variables += found["data"] + found["bss"]
+            bench.add(board.preset, figure, found["text"], "bytes",
+                      [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
         bench.add(board.preset, ".data and .bss of library and models", variables, "bytes",
                   [*command, "lib/*.c", "lib/models/*.c", "lib/words/*.c", "&&", size, "*.o"], tool_version)
         _ram(bench, board, command, Path(scratch), tool_version)

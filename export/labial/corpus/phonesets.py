@@ -28,8 +28,7 @@ from labial.corpus.labels import (
 )
 
 __all__ = ["ARPABET", "AUTO", "LABEL_SETS", "LAUGHTER", "LAUGHTER_GRADES", "PHONE_SETS", "SPEECH", "VOWELS", "PhoneSet",
-           "aliases_for",
-           "candidates_for", "normalise", "substitute_for"]
+           "aliases_for", "candidates_for", "normalise", "substitute_for"]
 
 
 @dataclass(frozen=True)
