@@ -11,7 +11,7 @@ import math
 import os
 import zipfile
 from contextlib import nullcontext
-from typing import Any, BinaryIO, ContextManager, Dict, Iterable, Mapping, Optional, Set, Tuple, Union
+from typing import Any, BinaryIO, ContextManager, Dict, Iterable, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -51,41 +51,33 @@ def read_zip(path: PathLike, names: Optional[Iterable[str]], most: int) -> Dict[
     """Members of a zip file by name: those of `names` that exist, or all of them. Raises OSError for a file that cannot
     be opened; ArrayError for a file that is not a zip, is encrypted or damaged, or whose members, unpacked, exceed
     `most` bytes together, or too many times the size of the file (`limits`)."""
-    with open(path, "rb") as file:
-        return _members(file, None if names is None else set(names), most)
-
-
-def _members(file: BinaryIO, wanted: Optional[Set[str]], most: int) -> Dict[str, bytes]:
     found: Dict[str, bytes] = {}
-    name = ""
-    try:
-        with zipfile.ZipFile(file) as archive:
-            members = [item for item in archive.infolist() if wanted is None or item.filename in wanted]
-            size, most = sum(item.file_size for item in members), limits.unpacked(_size(file), most)
-            if size > most:
-                raise ArrayError(f"unpacked, it has {size:,} bytes, more than the {most:,} that are read")
-            for item in members:
-                name = item.filename
-                if item.flag_bits & 1:
-                    raise ArrayError(f"{name} is encrypted")
-                if name in found:
-                    raise ArrayError(f"{name} is there twice")
-                if item.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others unpack without limit
-                    raise ArrayError(f"{name} is packed by method {item.compress_type}, which is not read")
-                with archive.open(item) as member:
-                    found[name] = member.read(item.file_size)  # without a size, as much as there is
-                    if len(found[name]) != item.file_size or member.read(1):
-                        raise ArrayError(f"{name} is damaged (it has another size than its head says)")
-    except ArrayError:
-        raise
-    except Exception as error:  # any error of zipfile, zlib and others in a damaged file
-        raise ArrayError(f"{name or 'the zip file'} is damaged ({' '.join(str(error).split())[:80]})") from None
+    name, wanted = "", None if names is None else set(names)
+    with open(path, "rb") as file:
+        try:
+            with zipfile.ZipFile(file) as archive:
+                members = [item for item in archive.infolist() if wanted is None or item.filename in wanted]
+                size = sum(item.file_size for item in members)
+                most = limits.unpacked(file.seek(0, os.SEEK_END), most)
+                if size > most:
+                    raise ArrayError(f"unpacked, it has {size:,} bytes, more than the {most:,} that are read")
+                for item in members:
+                    name = item.filename
+                    if item.flag_bits & 1:
+                        raise ArrayError(f"{name} is encrypted")
+                    if name in found:
+                        raise ArrayError(f"{name} is there twice")
+                    if item.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):  # others have no limit
+                        raise ArrayError(f"{name} is packed by method {item.compress_type}, which is not read")
+                    with archive.open(item) as member:
+                        found[name] = member.read(item.file_size)  # without a size, as much as there is
+                        if len(found[name]) != item.file_size or member.read(1):
+                            raise ArrayError(f"{name} is damaged (it has another size than its head says)")
+        except ArrayError:
+            raise
+        except Exception as error:  # any error of zipfile, zlib and others in a damaged file
+            raise ArrayError(f"{name or 'the zip file'} is damaged ({' '.join(str(error).split())[:80]})") from None
     return found
-
-
-def _size(file: BinaryIO) -> int:
-    """The bytes of a file, whose place stays."""
-    return file.seek(0, os.SEEK_END)
 
 
 def array(name: str, data: bytes) -> np.ndarray:
