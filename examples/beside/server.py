@@ -30,12 +30,14 @@ import subprocess
 import sys
 import tempfile
 import wave
+from functools import partial
 from pathlib import Path
 from typing import Callable, List, NamedTuple, Set, Tuple
 
 import labial
 from labial.errors import LabialError, apt, missing
-from labial.program import Parser, complain, number, os_error, run, whole
+from labial.files.grammar import whole
+from labial.program import Parser, complain, number, os_error, run
 
 #: Milliseconds of sound in a message: three frames.
 BLOCK = 60
@@ -237,11 +239,11 @@ async def main() -> int:
     parser.add_argument("--rig", default=str(Path(__file__).with_name("face.toml")), help="the face's description")
     parser.add_argument("--voice", default="slt", help="of flite")
     parser.add_argument("--host", default="127.0.0.1")
-    parser.add_argument("--port", type=whole(0, 65535), default=8765, help="0 for any that is free")
+    parser.add_argument("--port", type=partial(whole, 0, 65535), default=8765, help="0 for any that is free")
     parser.add_argument("--ahead", type=number(0, 600), default=1.0, help="seconds that are sent before they are heard")
-    parser.add_argument("--repeat", type=whole(0, 254), default=0, help="frames that each packet repeats")
+    parser.add_argument("--repeat", type=partial(whole, 0, 254), default=0, help="frames that each packet repeats")
     parser.add_argument("--with-sound", action="store_true", help="hear the voice, too, for lips nearer to people's")
-    parser.add_argument("--connections", type=whole(1, 10000), default=64, help="most toys at a time")
+    parser.add_argument("--connections", type=partial(whole, 1, 10000), default=64, help="most toys at a time")
     parser.add_argument("--idle", type=number(0.1, 86400), default=600.0, help="seconds without a word from a toy")
     options = parser.parse_args()
     service = Service(options)

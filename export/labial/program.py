@@ -26,24 +26,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def number(least: float, most: float) -> Callable[[str], float]:
-    """The `type` of an argument that is a number from `least` to `most`."""
-    return _reader(float, "a number", least, most)
-
-
-def whole(least: int, most: int) -> Callable[[str], int]:
-    """The `type` of an argument that is a whole number from `least` to `most`."""
-    read = _reader(int, "a whole number", least, most)
-    return lambda text: int(read(text))
-
-
-def _reader(convert: Callable[[str], float], what: str, least: float, most: float) -> Callable[[str], float]:
+    """The `type` of an argument that is a number from `least` to `most`; :func:`labial.files.grammar.whole` is that of
+    whole ones."""
     def read(text: str) -> float:
         try:
-            value = convert(text)
+            value = float(text)
         except ValueError:
             value = math.nan
         if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {what} from {least:g} to {most:g}")
+            raise argparse.ArgumentTypeError(f"{text!r} is not a number from {least:g} to {most:g}")
         return value
 
     return read

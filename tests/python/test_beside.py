@@ -490,10 +490,10 @@ needs_flite = pytest.mark.skipif(not shutil.which("flite"), reason="no flite: in
     (["--rig", "nosuch.toml"], 1, "server: nosuch.toml: No such file or directory"),
     (["--voice", "nosuch"], 1, "server: flite has no voice 'nosuch': it has "),
     (["--repeat", "250"], 1, "server: a packet cannot have 10 frames and 250 repeated ones: 1 .. 255 in all"),
-    (["--repeat", "300"], 2, "server: argument --repeat: '300' is not a whole number from 0 to 254"),
+    (["--repeat", "300"], 2, "server: argument --repeat: '300' is not a whole number within 0 .. 254"),
     (["--ahead", "-1"], 2, "server: argument --ahead: '-1' is not a number from 0 to 600"),
     (["--ahead", "nan"], 2, "server: argument --ahead: 'nan' is not a number from 0 to 600"),
-    (["--port", "65536"], 2, "server: argument --port: '65536' is not a whole number from 0 to 65535"),
+    (["--port", "65536"], 2, "server: argument --port: '65536' is not a whole number within 0 .. 65535"),
     (["--hurry"], 2, "server: unrecognized arguments: --hurry"),
 ])  # fmt: skip
 def test_a_server_checks_what_it_is_given(options: List[str], status: int, message: str, tmp_path: Path) -> None:

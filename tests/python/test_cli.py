@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Callable, Iterator, List, NoReturn
 
@@ -18,7 +19,8 @@ import labial.commands
 from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
-from labial.program import Parser, number, os_error, run, whole
+from labial.files.grammar import whole
+from labial.program import Parser, number, os_error, run
 from labial.rig.animation import FORMATS
 from labial.tables.model import save
 from models import random_model, write_motion
@@ -159,7 +161,7 @@ def test_amplitude_widens_what_is_exported(given: Path) -> None:
 def parser() -> Parser:
     found = Parser(prog="p")
     found.add_argument("--share", type=number(0, 1))
-    found.add_argument("--count", type=whole(1, 9))
+    found.add_argument("--count", type=partial(whole, 1, 9))
     return found
 
 
@@ -175,8 +177,8 @@ def test_numbers_within_their_limits(arguments: list) -> None:
     (["--share", "1.1"], "argument --share: '1.1' is not a number from 0 to 1"),
     (["--share", "nan"], "argument --share: 'nan' is not a number from 0 to 1"),
     (["--share", "x"], "argument --share: 'x' is not a number from 0 to 1"),
-    (["--count", "1.0"], "argument --count: '1.0' is not a whole number from 1 to 9"),
-    (["--count", "10"], "argument --count: '10' is not a whole number from 1 to 9"),
+    (["--count", "1.0"], "argument --count: '1.0' is not a whole number within 1 .. 9"),
+    (["--count", "10"], "argument --count: '10' is not a whole number within 1 .. 9"),
     (["a\nb"], "unrecognized arguments: a\\nb"),
 ])
 def test_errors_in_arguments_are_one_line(arguments: list, message: str, capsys: pytest.CaptureFixture) -> None:
