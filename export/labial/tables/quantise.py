@@ -198,12 +198,9 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
 
 
 def _check_limits(model: Model) -> None:
-    counts = {"phonemes": len(model.phonemes),
-              "classes": len(model.classes),
-              "components": int(np.max(model.component_count)),
-              "states": model.log_initial.shape[1],
-              "taps": len(model.kernel_lag),
-              "stride": model.search_stride,
+    counts = {"phonemes": len(model.phonemes), "classes": len(model.classes),
+              "components": int(np.max(model.component_count)), "states": model.log_initial.shape[1],
+              "taps": len(model.kernel_lag), "stride": model.search_stride,
               "reach": max([*np.abs(model.kernel_lag), 0])}
     for what, count in counts.items():
         if count > LIMITS[what]:
