@@ -6,6 +6,7 @@
 
 #include "fade.h"
 #include "fixed.h"
+#include "locks.h"
 
 /* How far around the delivered frame a sound can count: no onset or release below lasts longer. */
 #define AROUND_MS 120u
@@ -90,30 +91,42 @@ static void gather(const labial_model_t *model, const uint8_t *visemes, const ui
     }
 }
 
+/* Gathers the sounds of the frame that was delivered last; returns how much of them the face shows. */
+static uint32_t sounds_of(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
+                          uint16_t dominance[LABIAL_VISEMES])
+{
+    const labial_units_t *const units = &stream->units;
+    const uint32_t place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
+    const uint32_t whole = shown(stream);
+    const uint8_t *label;
+    uint32_t period;
+    /* At a change of model the labels of the frames before it are gone, and they show what follows. */
+    if (LABIAL_PAPER || place > LABIAL_REACH || whole == 0 || stream->models[stream->channels.slots[0]] != model)
+        return 0;
+    label = &units->labels[LABIAL_REACH - place];
+    period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
+    gather(model, visemes, label, LABIAL_REACH - place, period, 0, dominance);
+    gather(model, visemes, label, LABIAL_REACH + place, period, 1, dominance);
+    return whole;
+}
+
 int labial_visemes(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
                    uint8_t shares[LABIAL_VISEMES])
 {
     uint16_t dominance[LABIAL_VISEMES] = { 0 };
-    const labial_units_t *units;
-    uint32_t whole, place;
+    uint32_t whole = 0;
+    int result = LABIAL_ERROR_STATE;
     if (!stream || !model || !visemes || !shares)
         return LABIAL_ERROR_NULL;
-    if (stream->magic != LABIAL_MAGIC_)
-        return LABIAL_ERROR_STATE;
-    units = &stream->units;
-    place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
-    whole = shown(stream);
-    /* At a change of model the labels of the frames before it are gone, and they show what follows. */
-    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[stream->channels.slots[0]] != model)
-        whole = 0;
-    if (whole > 0) {
-        const uint8_t *label = &units->labels[LABIAL_REACH - place];
-        const uint32_t period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
-        gather(model, visemes, label, LABIAL_REACH - place, period, 0, dominance);
-        gather(model, visemes, label, LABIAL_REACH + place, period, 1, dominance);
+    LABIAL_LOCK(stream);
+    if (stream->magic == LABIAL_MAGIC_) {
+        whole = sounds_of(stream, model, visemes, dominance);
+        result = LABIAL_OK;
     }
-    share_out(dominance, whole, shares);
-    return LABIAL_OK;
+    LABIAL_UNLOCK(stream);
+    if (result == LABIAL_OK)
+        share_out(dominance, whole, shares);
+    return result;
 }
 
 /* FAP 44, 45 and 46 of each viseme; the others stay 0, since English moves the tongue neither sideways nor rolls it. */

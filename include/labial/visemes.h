@@ -71,8 +71,8 @@ extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
 /*
  * The shares of the frame that the stream delivered last, in its callback or until the next tick. `visemes` has the
  * viseme of each phoneme of `model`; numbers that are none, and frames of other models, such as laughter, count as
- * silence. The last frames before the model changes show what follows instead. As all calls, it must not run while
- * another context uses the stream.
+ * silence. The last frames before the model changes show what follows instead. In a build with LABIAL_LOCKS it takes
+ * the lock; without, as all calls, it must not run while another context uses the stream.
  *
  * It needs LABIAL_REACH of at least LABIAL_DELAY(stride); with less, and in a build with LABIAL_PAPER, all frames are
  * silence.
