@@ -87,7 +87,8 @@ const char *labial_timings_format_name(unsigned format);
 const char *labial_timings_format_help(unsigned format);
 const char *labial_timings_format_suffix(unsigned format);
 
-/* Prepares a parser. Returns LABIAL_OK, or LABIAL_ERROR_NULL. */
+/* Prepares a parser. Returns LABIAL_OK, LABIAL_ERROR_NULL, or LABIAL_ERROR_RANGE for a format that is none, with a parser
+ * for LABIAL_TIMINGS_AUTO. */
 int labial_timings_init(labial_timings_t *timings, labial_timings_format_t format);
 
 /*
