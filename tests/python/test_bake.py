@@ -67,7 +67,7 @@ def same_but_version(one: Path, other: Path) -> bool:
 
 PROGRAM = """\
 #include <stdio.h>
-#include "labial/rig.h"
+#include "labial/face.h"
 #include "talk.h"
 #include "talk_phonemes.h"
 
@@ -76,34 +76,29 @@ static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 static labial_player_t player;
 static const labial_rig_output_t output = LABIAL_RIG_SERVO(1400, 1900, 60);
 static const labial_rig_t jaw = { &output, 1 };
-static int16_t ahead[LABIAL_CHANNELS * 13];
-static labial_rig_delay_t delay = { ahead, 12, 0 };
-static int32_t pulse, change;
-static unsigned shown;
-
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    (void)user;
-    (void)frame;
-    if (labial_rig_delayed(&jaw, &delay, faps, &pulse, &change) == LABIAL_OK) {
-        const uint8_t *baked = talk_next(&player);
-        printf("%u %d %d\\n", shown++, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
-    }
-}
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(1, 12) / 4];
 
 int main(void)
 {
+    int32_t pulse;
     uint32_t next = 0;
-    int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
+    unsigned shown = 0;
+    int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, labial_face_frame, &face), moves;
+    if (labial_face_init(&face, &jaw, 50, 12, room, sizeof room) != LABIAL_OK)
+        return 1;
     talk_init(&player);
-    labial_rig_rest(&jaw, &pulse);
-    while (result >= 0 && result != LABIAL_DONE) {
-        result = talk_phonemes_feed(&stream, &next);
+    do {
+        if (result >= 0 && result != LABIAL_DONE)
+            result = talk_phonemes_feed(&stream, &next);
         if (result == LABIAL_OK)
             result = labial_tick(&stream);
-    }
-    while (delay.held > 0)
-        on_frame(NULL, 0, NULL);
+        moves = labial_face_tick(&face, &pulse);
+        if (moves == LABIAL_OK) {
+            const uint8_t *baked = talk_next(&player);
+            printf("%u %d %d\\n", shown++, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
+        }
+    } while (result >= 0 && (result != LABIAL_DONE || moves != LABIAL_DONE));
     printf("end %d %d\\n", result, talk_next(&player) != NULL);
     return 0;
 }
