@@ -214,8 +214,8 @@ static const uint8_t *nearest_contact(const labial_model_t *model, const uint8_t
     return NULL;
 }
 
-/* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that both
- * have. */
+/* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that
+ * both have. */
 static void part(const labial_model_t *model, const uint8_t *label, int16_t target[LABIAL_CHANNELS])
 {
     const uint8_t *const ahead = nearest_contact(model, label, 1), *behind;

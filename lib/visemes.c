@@ -1,6 +1,6 @@
 /*
- * visemes.c - the sounds that a frame shows, and the tongue (labial/visemes.h). It reads what the steps of a stream hold
- * and changes nothing.
+ * visemes.c - the sounds that a frame shows, and the tongue (labial/visemes.h). It reads what the steps of a stream
+ * hold and changes nothing.
  */
 #include "labial/visemes.h"
 
@@ -17,8 +17,8 @@ typedef struct {
     uint8_t onset, release;
 } dominance_t;
 
-/* Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference is
- * export/labial/reference/visemes.py. */
+/* Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference
+ * is export/labial/reference/visemes.py. */
 static const dominance_t dominances[LABIAL_VISEMES] = {
     { 384, 6, 6 },   { 2048, 51, 51 }, { 2048, 51, 51 }, { 1536, 34, 51 }, { 512, 10, 12 },
     { 512, 10, 12 }, { 1280, 16, 21 }, { 1024, 20, 25 }, { 512, 10, 12 },  { 768, 12, 12 },
@@ -78,8 +78,8 @@ static uint32_t shown(const labial_t *stream)
     return labial_fade_left(&stream->fade, LABIAL_VISEME_ONE);
 }
 
-/* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's phoneme
- * among those around it. */
+/* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's
+ * phoneme among those around it. */
 static void gather(const labial_model_t *model, const uint8_t *visemes, const uint8_t *label, uint32_t count,
                    uint32_t period, int later, uint16_t dominance[LABIAL_VISEMES])
 {

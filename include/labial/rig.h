@@ -201,8 +201,8 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
                            int32_t *changes);
 
 /*
- * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives them,
- * 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
+ * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives
+ * them, 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
  */
