@@ -42,6 +42,8 @@ extern "C" {
 /* Microseconds of the servo's pulses for the bytes 0 and 255. */
 #ifndef MOUTH_AT_0
 #define MOUTH_AT_0 1400
+#endif
+#ifndef MOUTH_AT_255
 #define MOUTH_AT_255 1900
 #endif
 
