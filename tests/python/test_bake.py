@@ -225,7 +225,19 @@ def test_limits_and_directions(tmp_path: Path) -> None:
     assert main(["bake", str(frames), "--rig", str(tmp_path / "face.toml"), "-o", str(tmp_path / "f.h")]) == 0
     assert data(tmp_path / "f.h") == [255, 0, 0, 0, 128, 0]
     text = (tmp_path / "f.h").read_text()
-    assert "#define F_JAW_AT_0 1300\n#define F_JAW_AT_255 1900" in text and "F_BROW = 1" in text
+    assert "#define F_JAW_AT_0 1300\n" in text and "#define F_JAW_AT_255 1900\n" in text and "F_BROW = 1" in text
+
+
+@pytest.mark.parametrize("option, pulses", [("AT_255=1700", "1400 1700"), ("AT_0=1500", "1500 1900")])
+def test_either_pulse_can_be_set_alone(tmp_path: Path, option: str, pulses: str) -> None:
+    """A header that overrides the one drives the servo beyond its limit."""
+    (tmp_path / "main.c").write_text(
+        '#include <stdio.h>\n#include "talk.h"\nint main(void)\n{\n'
+        '    const uint8_t ends[] = { 0, 255 };\n'
+        '    printf("%d %d", (int)talk_jaw(ends), (int)talk_jaw(ends + 1));\n    return 0;\n}\n')
+    run(CC, "-std=c99", *warnings("c"), f"-I{TALK}", f"-I{PLAYER.parent}", f"-DTALK_JAW_{option}",
+        tmp_path / "main.c", "-o", tmp_path / "main")
+    assert run(tmp_path / "main") == pulses
 
 
 def test_bytes_mean_what_the_formula_says(tmp_path: Path) -> None:
