@@ -4,7 +4,7 @@
  *     HH 70 AH 60 L 80 OW 250
  *
  * with a line end; up to 255 phonemes wait, some 80 words, and of more it says that they are left out. Every name that
- * labial_find() knows will do: ARPABET, flite's, IPA.
+ * labial_find() knows will do: ARPABET, flite's, IPA. The word `stop` drops what waits, and the mouth closes.
  *
  * A servo at pin 9. Boards of the ESP32 family use the library ESP32Servo: replace Servo.h by ESP32Servo.h.
  */
@@ -51,7 +51,8 @@ static void keep(uint32_t item)
     waiting[(first + held++) % (most + 1)] = item;
 }
 
-// Ends the word: a number is the milliseconds of the phoneme before it, anything else a phoneme's name.
+// Ends the word: a number is the milliseconds of the phoneme before it, `stop` drops all, and anything else is a
+// phoneme's name.
 static void takeWord()
 {
     if (length == 0)
@@ -68,6 +69,11 @@ static void takeWord()
             Serial.println("too long: the rest of the line is left out");
             tooLong = true;
         }
+        phoneme = LABIAL_ERROR_NAME;
+    } else if (strcmp(word, "stop") == 0) {
+        labial_cancel(&stream, 200);
+        held = 0;
+        speaking = false;
         phoneme = LABIAL_ERROR_NAME;
     } else {
         phoneme = labial_find(&speech_en_names, word, length);
