@@ -196,6 +196,8 @@ def test_other_languages_are_espeaks() -> None:
     assert total(timings) == 600 and timings[0][0] == "G"
     with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
         labial.phonemes("a", language="xx-none")
+    with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
+        labial.Voice(language="xx-none")
 
 
 VOWELS = "AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split()
