@@ -194,6 +194,8 @@ def test_other_languages_are_espeaks() -> None:
     assert labial.phonemes("Mama", language="de", own={"Mama": "P AA"}) == ["P", "AA"]
     timings = labial.word_timings([("Guten", 0, 300), ("Tag!", 300, 600)], language="de")
     assert total(timings) == 600 and timings[0][0] == "G"
+    assert labial.phonemes("Mama", language="de_DE") == labial.phonemes("Mama", language="de")
+    assert labial.phonemes("Mother's", language="en_US") == labial.phonemes("Mother's", language="en")
     with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
         labial.phonemes("a", language="xx-none")
     with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
@@ -292,8 +294,8 @@ def test_the_n_of_japanese() -> None:
 @needs_espeak
 def test_particles_and_letters_of_japanese() -> None:
     """は behind a word is "wa"; kana behind Latin letters are kana, where espeak-ng says "Japanese letter"."""
-    for text, phonemes in (("こんにちは", "K OW N N IY CH IY W AE"), ("これは", "K OW L EH W AE"), ("はは", "HH AE HH AE"),
-                           ("OKです", "OW K EY D EH S"), ("Tシャツ", "T IY SH AE S UH")):
+    for text, phonemes in (("こんにちは", "K OW N N IY CH IY W AE"), ("これは", "K OW L EH W AE"),
+                           ("はは", "HH AE HH AE"), ("OKです", "OW K EY D EH S"), ("Tシャツ", "T IY SH AE S UH")):
         assert labial.phonemes(text, language="ja") == phonemes.split(), text
 
 
@@ -305,7 +307,8 @@ def test_numbers_of_chinese() -> None:
             "1005": "一千零五", "1984": "一九八四", "2024": "二零二四", "2100": "二千一百", "10000": "一万",
             "10050": "一万零五十", "105000": "十万五千",
             "1234567": "一百二十三万四千五百六十七", "100000001": "一亿零一",
-            "1000000000000": "一万亿", "007": "零零七", "3,500": "三千五百", "1,234,567": "一百二十三万四千五百六十七", "3.14": "三点一四", "１２": "十二",
+            "1000000000000": "一万亿", "007": "零零七", "3,500": "三千五百",
+            "1,234,567": "一百二十三万四千五百六十七", "3.14": "三点一四", "１２": "十二",
             "12345678901234567": "一二三四五六七八九零一二三四五六七"}.items():  # fmt: skip
         assert labial.phonemes(digits, language="cmn") == labial.phonemes(spoken_so, language="cmn"), digits
     assert labial.phonemes("第3", language="cmn") == labial.phonemes("第三", language="cmn")

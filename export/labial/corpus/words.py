@@ -60,7 +60,10 @@ class Pronunciation(NamedTuple):
 
 def pronunciation(own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = ENGLISH,
                   numbers: bool = False) -> Pronunciation:
-    """How words are pronounced, from arguments as callers have them: phonemes in one text, or a list."""
+    """How words are pronounced, from arguments as callers have them: phonemes in one text, or a list; a language also
+    as locales and services name it, "de_DE" and "en-US"."""
+    language = re.sub("^([a-z]{2,3})_(?=[A-Z])", r"\1-", language)
+    language = ENGLISH if language == "en-US" else language
     split = {word: sounds.split() if isinstance(sounds, str) else list(sounds) for word, sounds in (own or {}).items()}
     return Pronunciation(split, language, bool(numbers))
 
