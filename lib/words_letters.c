@@ -85,6 +85,9 @@ static const char units[] =
     "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0yr\0year_\0yrs\0year_\0tbsp\0tablespoon_\0"
     "tsp\0teaspoon_\0";
 
+/* What a letter stands before that it begins with; as a list of units. */
+static const char lettered[] = "test\0\0tests\0\0day\0\0boy\0\0shaped\0\0";
+
 /* Capitals that are read letter by letter although a word could look so, words of two letters, of three that begin with
  * a vowel and others that do not look like words, and words unless the word before is not in capitals. */
 static const char spelt_words[] =
@@ -612,14 +615,32 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     return count > 0u;
 }
 
+/* Moves from a letter to the word behind a hyphen that begins with it, "w-what", but for names such as "t-test". */
+static void pass_stutter(labial_words_place_t *here)
+{
+    for (;;) {
+        labial_words_place_t next = *here, word;
+        labial_words_advance(&next);
+        if (next.code != '-' || labial_words_is_inside(here->before))
+            return;
+        labial_words_advance(&next);
+        word = next;
+        if (next.code != labial_words_small_letter(here->code) || takes_unit(&word, lettered))
+            return;
+        *here = next;
+    }
+}
+
 void labial_words_read_letters(labial_words_reading_t *reading)
 {
     labial_words_context_t *const context = reading->context;
-    labial_words_place_t next = reading->here;
+    labial_words_place_t next;
     const unsigned after = labial_words_forget(reading), shouting = context->shouting, named = context->named;
     unsigned number, first;
     run_t run;
     context->named = 0;
+    pass_stutter(&reading->here);
+    next = reading->here;
     labial_words_advance(&next);
     if (has_pointed(&next)) {
         read_pointed(reading, after);

@@ -72,6 +72,7 @@ PHRASES = [*"""
            *"1-80-A 1-80-a 12-80-A 12-A 1-A XX XXX XXI XIX VX IIII X5 Ja Janu Satu Septem Mar,5 Mar/5 Mar-5".split(),
            *"Mar!5 www.Mar-x 5s 12s 12345s 120s 747s 747sx 101st a5s a5sx x747 no.x NO.5 CA.5 www.a.no.5 Gen.x".split(),
            *"aaab soooo's xiii iiii vooov ooo oooo oOo sOOo SOOo ooo5 hooo'o loooL lOOOl goo aaa'a gooo9 eeel".split(),
+           *"w-w w-W W-w-what xw-w d-day d-days d-day's t-tests1 a-a- a-á e-e5 b-boy- n-no-no i-ii".split(),
            *"A's Xs &Xs aXs aX's &X ;dr &dr 5dL 5fl 1fl a.m.-x 5a.m.-6 5p.m.-x 5a.m-6 a.m.-6 5a.m.:x 5a.b.-6".split(),
            *"5a.m.s.-6 3:00p.m.-$5 1p.m.-2".split(),
            *"gen.x GEN.x 5m³ x³ 1⁄2 ½x a½ 5½ 5⅐ ⅒ `a` a`b 5% 5%-x 5%-6 80s-90s 80s-x A/A 5₂".split(),

@@ -107,6 +107,8 @@ _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours the
 
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
+_CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_STUTTER = re.compile(r"([A-Za-z])-(?=[a-z])(?=(?i:\1))(?!(?:tests?|day|boy|shaped)(?![A-Za-z0-9\1]|'[A-Za-z]))")
 _DRAWN_OUT = re.compile(r"(?i)^(?=[^ivx].*[aeiouy]|[aeouy]).*([a-z])\1\1$")
 _ROMAN = re.compile("(X{0,2})(I{1,3}|IV|VI{0,3}|IX)")
 _ONES = "I II III IV V VI VII VIII IX".split()
@@ -270,6 +272,8 @@ class _Reader:
     # ---- Letters
 
     def _read_letters(self, place: int) -> int:
+        while _STUTTER.match(self.simple, place) and not signs.is_inside(self.said.at(place - 1)):
+            place += 2
         before, named = self.said.at(place - 1), self.context.named
         after, self.context.named = self._forget(), False
         pointed = _POINTED.match(self.simple, place)
@@ -454,7 +458,7 @@ def _run_at(simple: str, place: int) -> Tuple[str, List[int]]:
     found = _RUN.match(simple, place)
     assert found is not None
     run, places, here = "", [place], place
-    while here < found.end() and len(run) < LONGEST and not (simple[here].isupper() and run[-1:].islower()):
+    while here < found.end() and len(run) < LONGEST and not (run and _CAMEL.match(simple, here)):
         run += simple[here]
         here += 1
         if _DRAWN_OUT.search(run):
