@@ -110,7 +110,8 @@ PHRASES = [*"""
            "Elm 5 St", "Elm St. The", "Elm St., Foo", "Elm St Dr Foo", "Elm St. $5", "Elm $5 St", "Elm St. a Foo",
            "Elm. Dr x", "iPhone St.", "Ave St. x Dr", "tv html mp3 css dvds abc tv's x.php",
            "hm grrr shhh xxx bzz ll'd", "Tv Html nfl's usb's id ids", "xbox y'all x's Latte openai's", "abcdef ghjklm"]
-LONG = ["111111111" * 30, "a" * 40 + "b", "ab" * 15 + "o" * 40 + "kk", "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
+LONG = ["111111111" * 30, "a" * 40 + "b", "ab" * 15 + "o" * 40 + "kk", "ab" * 150,
+        "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()
 
