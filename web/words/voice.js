@@ -463,6 +463,7 @@ function clockOf({ shown, heard }, clock, context) {
             return { read: () => (silent() ? null : heard(clock)), anchored: false };
         }
         if ("getAudioTracks" in clock) {
+            if (shared?.state === "closed") shared = null; // by the page
             const own = context ?? (shared ??= new AudioContext());
             if (own === shared) Promise.resolve(own.resume()).catch(() => {}); // waits for a click
             return { read: () => output(own), anchored: true };
