@@ -174,10 +174,11 @@ test("an AudioContext counts from begin(), less what its device needs", async ()
     assert.ok(Math.abs(early.time - (7 - 0.01 - 0.02)) < 1e-9, "begin() without a time is now, and no frame was shown");
 });
 
-test("MediaStreams without a context share one, which asks to run", async (context) => {
-    let [made, asked] = [0, 0];
+test("MediaStreams without a context share one, which asks to run, until the page closes it", async (context) => {
+    let [made, asked, last] = [0, 0, null];
     globalThis.AudioContext = class {
         currentTime = ++made;
+        constructor() { last = this; }
         resume() { asked++; }
     };
     context.after(() => { delete globalThis.AudioContext; });
@@ -187,6 +188,8 @@ test("MediaStreams without a context share one, which asks to run", async (conte
         voice.close();
     }
     assert.deepEqual([made, asked], [1, 5]);
+    last.state = "closed";
+    assert.equal((await labial.voice({ clock: { getAudioTracks: () => [] } })).now, 2);
 });
 
 test("a media element counts while it plays", async () => {
