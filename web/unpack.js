@@ -125,18 +125,17 @@ export function unpack(text) {
             known.state = state < 4 ? 0 : state < 10 ? state - 3 : state - 6;
             return;
         }
-        const [found, repeated, single] = state < 7 ? [7, 8, 9] : [10, 11, 11];
         let size = 1;
         if (!bit(known.again, state)) {
             size = length(known.lengths, place);
             last.unshift(distance(size));
             last.pop();
-            known.state = found;
+            known.state = state < 7 ? 7 : 10;
         } else {
             const which = !bit(known.older, state) ? 0 : !bit(known.third, state) ? 1 : 2 + bit(known.fourth, state);
             if (which || bit(known.long, 4 * state + place)) size = length(known.lengthsAgain, place);
             last.unshift(...last.splice(which, 1));
-            known.state = size === 1 ? single : repeated;
+            known.state = state >= 7 ? 11 : size === 1 ? 9 : 8;
         }
         if (last[0] >= used || used + size > end) throw damaged();
         for (const stop = used + size; used < stop; used++) out[used] = out[used - last[0] - 1];
