@@ -62,8 +62,8 @@ uint32_t board_count(void);
 #define BOARD_INTERRUPTS 32
 #define BOARD_SYSTEM_TIMER (0u - 1u)
 
-/* Called for every interrupt that the image enables, with its number below BOARD_INTERRUPTS or that of the timer: an image
- * that uses interrupts defines it. Without a definition an interrupt is a processor fault. */
+/* Called for every interrupt that the image enables, with its number below BOARD_INTERRUPTS or that of the timer: an
+ * image that uses interrupts defines it. Without a definition an interrupt is a processor fault. */
 void board_interrupt(unsigned number);
 
 /* ---- Stack ------------------------------------------------------------------------------------------------------- */

@@ -26,8 +26,8 @@
 #define FLAT_INTERFACE 8
 
 /* Stands before each function that other languages call; nothing else leaves the module or the shared library, where
- * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are declared
- * here and nowhere else. */
+ * their symbols begin with flat_. flat/CMakeLists.txt makes the list of them that Python binds, so that they are
+ * declared here and nowhere else. */
 #if defined(__wasm__)
 #define FLAT(name) __attribute__((export_name(#name)))
 #elif defined(_WIN32)
@@ -49,8 +49,8 @@ typedef struct {
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u];
 } mouth_t;
 
-/* FLAT_INTERFACE, "MAJOR.MINOR.PATCH", the method that the library is built for ("labial" or "paper"), and a sentence for
- * a result. */
+/* FLAT_INTERFACE, "MAJOR.MINOR.PATCH", the method that the library is built for ("labial" or "paper"), and a sentence
+ * for a result. */
 FLAT(interface) uint32_t interface(void);
 FLAT(version) const char *version(void);
 FLAT(method) const char *method(void);
@@ -62,8 +62,8 @@ FLAT(result_text) const char *result_text(int result);
 FLAT(function) const char *function(unsigned number);
 #endif
 
-/* Bytes of what the caller makes room for: a stream, a loaded model, a laugh, a parser of timings, an output and a curve
- * of a rig. */
+/* Bytes of what the caller makes room for: a stream, a loaded model, a laugh, a parser of timings, an output and a
+ * curve of a rig. */
 FLAT(mouth_size) uint32_t mouth_size(void);
 FLAT(blob_size) uint32_t blob_size(void);
 FLAT(laugh_size) uint32_t laugh_size(void);
@@ -117,9 +117,9 @@ FLAT(mouth_milliseconds) uint32_t mouth_milliseconds(const mouth_t *mouth);
 FLAT(mouth_waiting) unsigned mouth_waiting(const mouth_t *mouth);
 FLAT(mouth_delay) unsigned mouth_delay(const mouth_t *mouth);
 
-/* Ticks until `count` frames lie at `out`, and their shares at `shares` unless that is null, or no more can be had; they are as many as it returns, unless it is an error.
- * Ticks that bring nothing before the first frame are made, too. As these follow no clock, the face stays where it is
- * while phonemes are late. */
+/* Ticks until `count` frames lie at `out`, and their shares at `shares` unless that is null, or no more can be had;
+ * they are as many as it returns, unless it is an error. Ticks that bring nothing before the first frame are made, too.
+ * As these follow no clock, the face stays where it is while phonemes are late. */
 FLAT(mouth_run) int mouth_run(mouth_t *mouth, int16_t *out, uint8_t *shares, unsigned count);
 
 /* A laugh; laugh_next() writes a phoneme and its milliseconds. */
@@ -128,15 +128,15 @@ FLAT(laugh_next) int laugh_next(labial_laugh_t *laugh, uint32_t *out);
 
 FLAT(blend) int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out);
 
-/* An output of a rig from FLAT_OUTPUT numbers: 13 weights; gain, neutral, minimum, maximum, invert, contact, closed; slew,
- * deadband, acceleration; how many segments its curve has, 0 for none, and three numbers of each; 1 where it has
+/* An output of a rig from FLAT_OUTPUT numbers: 13 weights; gain, neutral, minimum, maximum, invert, contact, closed;
+ * slew, deadband, acceleration; how many segments its curve has, 0 for none, and three numbers of each; 1 where it has
  * amounts of visemes, and these. Curve and amounts lie at `more`, rig_curve_size() bytes, and must stay there. */
 #define FLAT_OUTPUT (LABIAL_CHANNELS + 11 + 3 * LABIAL_RIG_SEGMENTS + 1 + LABIAL_VISEMES)
 FLAT(rig_output) void rig_output(labial_rig_output_t *output, void *more, const int32_t *numbers);
 FLAT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count);
 
-/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_visemes_ahead()); those of a frame
- * alone. `shares` are null where they are not known. */
+/* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_visemes_ahead()); those of a
+ * frame alone. `shares` are null where they are not known. */
 FLAT(rig_rest) int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values);
 FLAT(rig_apply)
 int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
@@ -153,9 +153,9 @@ FLAT(timings_suffix) const char *timings_suffix(unsigned format);
 FLAT(timings_init)
 int timings_init(labial_timings_t *timings, unsigned format, const char *tier, unsigned tier_number);
 
-/* A timing: `times` are start, end and apex in seconds, the last one -1 without; `numbers` how many bytes were taken, the
- * line, a laugh's intensity or -1, and 1 where labels are X-SAMPA. timings_label() and timings_word() are its texts, or
- * null; timings_message() and timings_line() say what is wrong, and where. */
+/* A timing: `times` are start, end and apex in seconds, the last one -1 without; `numbers` how many bytes were taken,
+ * the line, a laugh's intensity or -1, and 1 where labels are X-SAMPA. timings_label() and timings_word() are its
+ * texts, or null; timings_message() and timings_line() say what is wrong, and where. */
 FLAT(timings_next)
 int timings_next(labial_timings_t *timings, const char *text, uint32_t size, double *times, int32_t *numbers);
 FLAT(timings_end) int timings_end(labial_timings_t *timings, double *times, int32_t *numbers);
@@ -228,9 +228,9 @@ int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_p
 /* Milliseconds from the begin of a frame until it is known. */
 FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);
 
-/* These write the frames that they deliver to `faps`, 13 numbers each, the shares of their sounds to `visemes`, 15 each,
- * and the stretches of one class to `stretches`, class, first frame and number of frames, up to `room` of each. They
- * return how many frames there were, or an error; ears_stretches() is how many stretches. */
+/* These write the frames that they deliver to `faps`, 13 numbers each, the shares of their sounds to `visemes`, 15
+ * each, and the stretches of one class to `stretches`, class, first frame and number of frames, up to `room` of each.
+ * They return how many frames there were, or an error; ears_stretches() is how many stretches. */
 FLAT(ears_push)
 int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint8_t *visemes,
               uint32_t *stretches, uint32_t room);
@@ -262,8 +262,8 @@ FLAT(words_own) const labial_words_own_t *words_own(void *memory, unsigned count
 FLAT(words_label) const char *words_label(unsigned phoneme);
 
 /* Reads the next word of a text; `context` is all zero at its beginning. `out` has 3 + 3 * LABIAL_WORDS_PHONEMES bytes:
- * the number of phonemes, that of the word's characters, how many phonemes the word before loses at its end; then of each
- * phoneme its number, its character and whether a spoken word begins. Returns the word's kind. */
+ * the number of phonemes, that of the word's characters, how many phonemes the word before loses at its end; then of
+ * each phoneme its number, its character and whether a spoken word begins. Returns the word's kind. */
 FLAT(words_read)
 int words_read(const labial_words_own_t *own, labial_words_context_t *context, const char *text, uint32_t size,
                uint8_t *out);

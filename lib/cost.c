@@ -1,6 +1,7 @@
 /*
- * cost.c - what a model and a stream take: work (labial/model.h), memory, time, and the model's bytes (labial/labial.h).
- * It reads what the steps of a stream hold and changes nothing; a program that only plays links none of it.
+ * cost.c - what a model and a stream take: work (labial/model.h), memory, time, and the model's bytes
+ * (labial/labial.h). It reads what the steps of a stream hold and changes nothing; a program that only plays links none
+ * of it.
  */
 #include "fixed.h"
 #include "locks.h"

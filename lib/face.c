@@ -1,8 +1,9 @@
 /*
  * face.c - a ring of frames between a source and the outputs of a rig (labial/face.h).
  *
- * Frames wait as what they want of each output, in its units: so that those of FAPs and those of values are one kind, and
- * a face of few outputs looks ahead in few bytes. All outputs move in labial_face_tick(), by labial_rig_step() alone.
+ * Frames wait as what they want of each output, in its units: so that those of FAPs and those of values are one kind,
+ * and a face of few outputs looks ahead in few bytes. All outputs move in labial_face_tick(), by labial_rig_step()
+ * alone.
  */
 #include "labial/face.h"
 
@@ -144,8 +145,8 @@ static uint32_t face_distance(int32_t a, int32_t b)
     return a < b ? (uint32_t)b - (uint32_t)a : (uint32_t)a - (uint32_t)b;
 }
 
-/* One of `left` steps of the way to rest, from what was wanted or from where the output is, whichever is nearer: so that
- * what lags behind neither opens any further nor closes more slowly. */
+/* One of `left` steps of the way to rest, from what was wanted or from where the output is, whichever is nearer: so
+ * that what lags behind neither opens any further nor closes more slowly. */
 static int32_t face_step(int32_t rest, int32_t wanted, int32_t value, uint32_t left)
 {
     uint32_t far = face_distance(rest, wanted);
@@ -191,8 +192,8 @@ static int face_look(labial_face_t *face)
     return LABIAL_DONE;
 }
 
-/* What is in sight of an output: `now`, and behind it `count` frames that wait. Returns the number of the frame in which
- * it is closed next. */
+/* What is in sight of an output: `now`, and behind it `count` frames that wait. Returns the number of the frame in
+ * which it is closed next. */
 static uint32_t face_see(const labial_face_t *face, unsigned output, int32_t now, unsigned count, labial_sight_t *sight)
 {
     const int32_t closed = face->rig->outputs[output].closed;

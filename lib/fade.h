@@ -3,8 +3,8 @@
  *
  * Where e is the way's step of its length, the pose is from + (aim - from) (3 e^2 - 2 e^3), and the aim itself with the
  * last step. A way to motion begins with a pose that moves: `from` goes on as far as the last frame moved it, half as
- * far with each frame; jaw and lips may arrive sooner than the rest. A way to rest begins with a pose that stands still,
- * so that it never leads away from rest.
+ * far with each frame; jaw and lips may arrive sooner than the rest. A way to rest begins with a pose that stands
+ * still, so that it never leads away from rest.
  */
 #ifndef LABIAL_FADE_H
 #define LABIAL_FADE_H
@@ -19,9 +19,9 @@
 /* Channels that meet in time for a contact, those of the jaw and the lips: FAPs 3, 51, 52 and 55 to 58. */
 #define LABIAL_FADE_CLOSING 0x799u
 
-/* Steps in which these reach motion that begins anew with the frame of `age` in `stream`, on a way of `length` steps from
- * lips that are `opening` FAP units apart: where lips that are apart must meet before the way's end, as many as lead to the
- * second frame of their contact (stream.c). */
+/* Steps in which these reach motion that begins anew with the frame of `age` in `stream`, on a way of `length` steps
+ * from lips that are `opening` FAP units apart: where lips that are apart must meet before the way's end, as many as
+ * lead to the second frame of their contact (stream.c). */
 unsigned labial_fade_closing(const labial_t *stream, unsigned age, unsigned length, int opening);
 
 /* Frames of a cancel over `milliseconds` (labial/result.h). */
@@ -31,7 +31,8 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
  * lips arrive with step `closing`. */
 void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on);
 
-/* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral face. */
+/* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral
+ * face. */
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
 
 /* What is left of `whole` on the way, in even steps; 0 at its end, and without one. */

@@ -4,7 +4,8 @@
  *     samples --convert--> 16 kHz --features--> two hops --network--> heads --motion--> pose --fade--> callback
  *     any rate             window               a frame   the frame `ahead` frames ago  the one before
  *
- * A callback may initialise its stream anew, which the caller sees by `busy`: then it returns, and touches nothing more.
+ * A callback may initialise its stream anew, which the caller sees by `busy`: then it returns, and touches nothing
+ * more.
  */
 #include "labial/hear.h"
 
@@ -43,7 +44,8 @@ static int tell_frame(labial_hear_t *hear, const int16_t *pose)
 static int tell_way_to_rest(labial_hear_t *hear, unsigned frames)
 {
     labial_fade_begin(&hear->fade, frames, frames, 0);
-    hear->told = hear->told == LABIAL_HEAR_NOTHING_ ? LABIAL_HEAR_NOTHING_ : LABIAL_HEAR_WAY_TO_REST_;
+    if (hear->told != LABIAL_HEAR_NOTHING_)
+        hear->told = LABIAL_HEAR_WAY_TO_REST_;
     for (; frames > 0; frames--)
         if (!tell_frame(hear, NULL))
             return 0;

@@ -27,8 +27,8 @@
 #define FIRST_BIN 2u
 #define LAST_BIN 121u
 
-/* log2 in Q8 of the least energy; a level's fall in a hop, and until a hop has reached it; log2 in Q8 of a feature's range
- * around the level. */
+/* log2 in Q8 of the least energy; a level's fall in a hop, and until a hop has reached it; log2 in Q8 of a feature's
+ * range around the level. */
 #define LOG_LEAST 256
 #define LEVEL_LEAST (LABIAL_HEAR_LEVEL_MIN / 256 * LABIAL_HEAR_LEVEL_ONE)
 #define LEVEL_FALL 3146
@@ -251,7 +251,8 @@ void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int silent, labia
     }
 }
 
-/* ---- Samples to windows ------------------------------------------------------------------------------------------- */
+/* ---- Samples to windows
+ * ------------------------------------------------------------------------------------------- */
 
 /* Whether the samples that a window has beyond the one before it are silent. */
 static int is_silent(const int16_t *window)

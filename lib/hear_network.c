@@ -2,8 +2,8 @@
  * hear_network.c - features to scores and FAPs (labial/hear_model.h). hearing/integer.py computes the same integers.
  *
  * Each block has a ring of rows for what its dense layer made of former frames, and all but the first another one for
- * their own input, which is added when the frames ahead of it are known. So the output of a block is later than its
- * input by ahead * dilation frames, and a block waits until its first input comes.
+ * their own input, which is added when the frames ahead of it are known. A block's output lags its input by
+ * ahead * dilation frames; until it has that many, it gives none.
  *
  * No sum overflows: 252 products of a weight and an activation are below 2^30, and so is a bias of 16 bits, shifted by
  * 15; a memory's 16 products are below 2^26.

@@ -23,7 +23,8 @@ static inline int32_t labial_hear_convert_last(const labial_hear_convert_t *conv
     return convert->past[convert->at + LABIAL_HEAR_TAPS_ - 1];
 }
 
-/* For rates other than 16 kHz: takes a sample, and writes those at 16 kHz that it completes to `out`; returns how many. */
+/* For rates other than 16 kHz: takes a sample, and writes those at 16 kHz that it completes to `out`; returns how
+ * many. */
 unsigned labial_hear_convert(labial_hear_convert_t *convert, int32_t sample, int16_t out[LABIAL_HEAR_CONVERTED_MAX]);
 
 /* ---- hear_features.c: what the network hears: energies of bands, relative to the level of the voice -------------- */

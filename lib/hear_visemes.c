@@ -1,6 +1,6 @@
 /*
- * hear_visemes.c - the sounds that a frame of hearing shows (labial_hear_visemes()): those of the classes that lead in it
- * and beside it. hearing/integer.py computes the same integers.
+ * hear_visemes.c - the sounds that a frame of hearing shows (labial_hear_visemes()): those of the classes that lead in
+ * it and beside it. hearing/integer.py computes the same integers.
  */
 #include "fade.h"
 #include "fixed.h"

@@ -1,6 +1,6 @@
 /*
  * locks.h - with LABIAL_LOCKS, the calls of labial.h without their lock, which stream.c has; locks.c has those with it.
- * What only reads a stream (cost.c) takes the lock itself.
+ * What only reads a stream (cost.c, visemes.c) takes the lock itself.
  */
 #ifndef LABIAL_LOCKS_H
 #define LABIAL_LOCKS_H

@@ -138,8 +138,8 @@ static uint32_t reach(const uint32_t *costs, const labial_transition_t *transiti
     return least;
 }
 
-/* The Viterbi search: the most probable states of the piece's steps, the lower one at a tie. A step has as many frames as
- * share a state, and sees the target of the middle one or of the last. */
+/* The Viterbi search: the most probable states of the piece's steps, the lower one at a tie. A step has as many frames
+ * as share a state, and sees the target of the middle one or of the last. */
 static void search(const part_t *part, uint8_t path[LABIAL_PIECE])
 {
     const labial_model_t *model = part->model;
@@ -171,7 +171,8 @@ static void search(const part_t *part, uint8_t path[LABIAL_PIECE])
     }
 }
 
-/* Solves equation 3 for a path and puts the motion into its ring, cross-faded with what is there of the piece before. */
+/* Solves equation 3 for a path and puts the motion into its ring, cross-faded with what is there of the piece
+ * before. */
 static void solve(const part_t *part, const uint8_t path[LABIAL_PIECE])
 {
     const labial_channel_t *channel = &part->model->channels[part->channel];

@@ -351,26 +351,3 @@ int labial_rig_apply_visemes_ahead(const labial_rig_t *rig, const int16_t *frame
     }
     return LABIAL_OK;
 }
-
-int labial_rig_delayed(const labial_rig_t *rig, labial_rig_delay_t *delay, const int16_t *faps, int32_t *values,
-                       int32_t *changes)
-{
-    size_t i, kept;
-    int result;
-    if (!rig || !rig->outputs || !delay || !delay->frames || !values)
-        return LABIAL_ERROR_NULL;
-    if (delay->held > delay->ahead) /* invalid: stay within the frames */
-        delay->held = delay->ahead;
-    if (faps) {
-        for (i = 0; i < LABIAL_CHANNELS; i++)
-            delay->frames[(size_t)LABIAL_CHANNELS * delay->held + i] = faps[i];
-        if (delay->held++ < delay->ahead)
-            return LABIAL_WAITING;
-    } else if (delay->held == 0)
-        return LABIAL_DONE;
-    result = labial_rig_apply_ahead(rig, delay->frames, delay->held, values, changes);
-    kept = (size_t)LABIAL_CHANNELS * --delay->held;
-    for (i = 0; i < kept; i++)
-        delay->frames[i] = delay->frames[i + LABIAL_CHANNELS];
-    return result;
-}

@@ -1,6 +1,6 @@
 /*
- * rig_parts.h - the steps of an output (rig.c), for what applies rigs: from FAPs to the value that they mean, and from there
- * to the next one that limits of speed and acceleration allow.
+ * rig_parts.h - the steps of an output (rig.c), for what applies rigs: from FAPs to the value that they mean, and from
+ * there to the next one that limits of speed and acceleration allow.
  */
 #ifndef LABIAL_RIG_PARTS_H
 #define LABIAL_RIG_PARTS_H
@@ -32,9 +32,9 @@ int32_t labial_rig_target(const labial_rig_output_t *output, const int16_t faps[
                           const uint8_t *shares);
 
 /*
- * The value that follows `last`, which the last frame changed by `change`, on the way to those of `sight`: `count` of them
- * are set, 1 .. LABIAL_RIG_SIGHT, the others 0. Without a limit of acceleration only the first one is looked at, and
- * `touch` is the number of the frame, 0 for this one, in which lips touch next.
+ * The value that follows `last`, which the last frame changed by `change`, on the way to those of `sight`: `count` of
+ * them are set, 1 .. LABIAL_RIG_SIGHT, the others 0. Without a limit of acceleration only the first one is looked at,
+ * and `touch` is the number of the frame, 0 for this one, in which lips touch next.
  */
 int32_t labial_rig_step(const labial_rig_output_t *output, labial_sight_t *sight, uint32_t touch, int32_t last,
                         int32_t change);

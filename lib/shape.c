@@ -72,8 +72,8 @@ static unsigned score(const labial_model_t *model, const labial_spoken_t *spoken
     return best;
 }
 
-/* Finds what the shape of a phoneme is mixed of: the best component alone, or each by its likelihood, the best one
- * having what rounding leaves. */
+/* Picks the components of a phoneme's shape: the best alone, or all weighted by likelihood, the best taking the
+ * rounding remainder. */
 static void select_components(const labial_model_t *model, const labial_spoken_t *spoken, labial_selection_t *selection)
 {
     const unsigned count = model->phonemes[spoken->phoneme].component_count;
@@ -214,8 +214,8 @@ static const uint8_t *nearest_contact(const labial_model_t *model, const uint8_t
     return NULL;
 }
 
-/* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that both
- * have. */
+/* Parts the lips in a frame between two contacts that are LABIAL_CONTACT_FRAMES or less apart, in the channels that
+ * both have. */
 static void part(const labial_model_t *model, const uint8_t *label, int16_t target[LABIAL_CHANNELS])
 {
     const uint8_t *const ahead = nearest_contact(model, label, 1), *behind;

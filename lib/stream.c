@@ -9,8 +9,9 @@
  *
  * Where the model changes, and at the end, the solution ends with the last frame and the next one begins anew; the
  * backward pass does not couple the two, for rho is one there and kappa zero. Frames that are delivered then fade from
- * the pose that was delivered last (fade.h). When there is no frame to deliver, because the stream is over, was cancelled
- * or waits for phonemes, the face goes to rest; from there, or from where it is on its way, later frames fade in.
+ * the pose that was delivered last (fade.h). When there is no frame to deliver, because the stream is over, was
+ * cancelled or waits for phonemes, the face goes to rest; from there, or from where it is on its way, later frames fade
+ * in.
  */
 #include <string.h>
 

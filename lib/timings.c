@@ -457,6 +457,8 @@ int labial_timings_init(labial_timings_t *timings, labial_timings_format_t forma
         return LABIAL_ERROR_NULL;
     memset(timings, 0, sizeof *timings);
     timings->line = 1;
+    if ((unsigned)format >= FORMAT_COUNT)
+        return LABIAL_ERROR_RANGE;
     timings->format = (uint8_t)format;
     return LABIAL_OK;
 }

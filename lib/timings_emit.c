@@ -10,8 +10,8 @@
 
 /* ---- Texts ----------------------------------------------------------------------------------------------------- */
 
-/* Adds `text` to the message, in one line: texts of a TextGrid may have line ends. There is room for three texts and the
- * longest pattern. */
+/* Adds `text` to the message, in one line: texts of a TextGrid may have line ends. There is room for three texts and
+ * the longest pattern. */
 static uint32_t message_add(labial_timings_t *t, uint32_t at, const char *text)
 {
     uint32_t i;

@@ -1,6 +1,6 @@
 /*
- * timings_parts.h - what the parts of the parser of timings share. Functions that read on return LABIAL_OK when a timing
- * is complete, in `found`, LABIAL_WAITING when none is, and LABIAL_ERROR_TIMINGS.
+ * timings_parts.h - what the parts of the parser of timings share. Functions that read on return LABIAL_OK when a
+ * timing is complete, in `found`, LABIAL_WAITING when none is, and LABIAL_ERROR_TIMINGS.
  */
 #ifndef LABIAL_TIMINGS_PARTS_H
 #define LABIAL_TIMINGS_PARTS_H

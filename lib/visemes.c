@@ -1,11 +1,12 @@
 /*
- * visemes.c - the sounds that a frame shows, and the tongue (labial/visemes.h). It reads what the steps of a stream hold
- * and changes nothing.
+ * visemes.c - the sounds that a frame shows, and the tongue (labial/visemes.h). It reads what the steps of a stream
+ * hold and changes nothing.
  */
 #include "labial/visemes.h"
 
 #include "fade.h"
 #include "fixed.h"
+#include "locks.h"
 
 /* How far around the delivered frame a sound can count: no onset or release below lasts longer. */
 #define AROUND_MS 120u
@@ -16,8 +17,8 @@ typedef struct {
     uint8_t onset, release;
 } dominance_t;
 
-/* Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference is
- * export/labial/reference/visemes.py. */
+/* Lips round early (onsets of 112 ms and less), and closed lips and teeth on the lip part fast (40 ms). The reference
+ * is export/labial/reference/visemes.py. */
 static const dominance_t dominances[LABIAL_VISEMES] = {
     { 384, 6, 6 },   { 2048, 51, 51 }, { 2048, 51, 51 }, { 1536, 34, 51 }, { 512, 10, 12 },
     { 512, 10, 12 }, { 1280, 16, 21 }, { 1024, 20, 25 }, { 512, 10, 12 },  { 768, 12, 12 },
@@ -77,8 +78,8 @@ static uint32_t shown(const labial_t *stream)
     return labial_fade_left(&stream->fade, LABIAL_VISEME_ONE);
 }
 
-/* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's phoneme
- * among those around it. */
+/* What the sounds of a frame and of up to `count` frames after it, or before it, are in it. `label` is the frame's
+ * phoneme among those around it. */
 static void gather(const labial_model_t *model, const uint8_t *visemes, const uint8_t *label, uint32_t count,
                    uint32_t period, int later, uint16_t dominance[LABIAL_VISEMES])
 {
@@ -90,30 +91,42 @@ static void gather(const labial_model_t *model, const uint8_t *visemes, const ui
     }
 }
 
+/* Gathers the sounds of the frame that was delivered last; returns how much of them the face shows. */
+static uint32_t sounds_of(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
+                          uint16_t dominance[LABIAL_VISEMES])
+{
+    const labial_units_t *const units = &stream->units;
+    const uint32_t place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
+    const uint32_t whole = shown(stream);
+    const uint8_t *label;
+    uint32_t period;
+    /* At a change of model the labels of the frames before it are gone, and they show what follows. */
+    if (LABIAL_PAPER || place > LABIAL_REACH || whole == 0 || stream->models[stream->channels.slots[0]] != model)
+        return 0;
+    label = &units->labels[LABIAL_REACH - place];
+    period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
+    gather(model, visemes, label, LABIAL_REACH - place, period, 0, dominance);
+    gather(model, visemes, label, LABIAL_REACH + place, period, 1, dominance);
+    return whole;
+}
+
 int labial_visemes(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
                    uint8_t shares[LABIAL_VISEMES])
 {
     uint16_t dominance[LABIAL_VISEMES] = { 0 };
-    const labial_units_t *units;
-    uint32_t whole, place;
+    uint32_t whole = 0;
+    int result = LABIAL_ERROR_STATE;
     if (!stream || !model || !visemes || !shares)
         return LABIAL_ERROR_NULL;
-    if (stream->magic != LABIAL_MAGIC_)
-        return LABIAL_ERROR_STATE;
-    units = &stream->units;
-    place = stream->pending - units->frames; /* frames that were accepted and are not delivered */
-    whole = shown(stream);
-    /* At a change of model the labels of the frames before it are gone, and they show what follows. */
-    if (LABIAL_PAPER || place > LABIAL_REACH || stream->models[stream->channels.slots[0]] != model)
-        whole = 0;
-    if (whole > 0) {
-        const uint8_t *label = &units->labels[LABIAL_REACH - place];
-        const uint32_t period = labial_quotient(1000u, (uint32_t)model->frames_per_second);
-        gather(model, visemes, label, LABIAL_REACH - place, period, 0, dominance);
-        gather(model, visemes, label, LABIAL_REACH + place, period, 1, dominance);
+    LABIAL_LOCK(stream);
+    if (stream->magic == LABIAL_MAGIC_) {
+        whole = sounds_of(stream, model, visemes, dominance);
+        result = LABIAL_OK;
     }
-    share_out(dominance, whole, shares);
-    return LABIAL_OK;
+    LABIAL_UNLOCK(stream);
+    if (result == LABIAL_OK)
+        share_out(dominance, whole, shares);
+    return result;
 }
 
 /* FAP 44, 45 and 46 of each viseme; the others stay 0, since English moves the tongue neither sideways nor rolls it. */

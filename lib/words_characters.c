@@ -109,6 +109,8 @@ static unsigned simplified(uint32_t code, unsigned *pending)
         code -= 0xfee0u;
     if (code == '`')
         return '\'';
+    if (code == 0x2044u) /* of fractions */
+        return '/';
     if (code < 0x80u)
         return code > ' ' && code < 0x7fu ? (unsigned)code : (unsigned)NO_CHARACTER;
     if (code >= 0x2010u && code <= 0x2013u) /* hyphens and the en dash */

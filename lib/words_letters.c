@@ -42,7 +42,8 @@ static const char *const meanings[] = {
     "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0track\0+\0terminal\0+\0",
     "ugh\0ug\0uber\0oober\0usb\0-\0url\0-\0usa\0-\0uk\0-\0unit\0+\0",
     "vs\0versus\0vol\0volume\0",
-    "wi\0why\0wifi\0why fie\0www\0-\0whoa\0woe\0",
+    ("wi\0why\0wifi\0why fie\0www\0-\0whoa\0woe\0wwi\0double you double you one\0"
+     "wwii\0double you double you two\0"),
     "xbox\0ex box\0xyz\0-\0",
     "yaml\0yamel\0yuck\0yuk\0youtube\0you tube\0y'all\0yawl\0",
     "",
@@ -65,14 +66,16 @@ static const char no_names[] =
     "look\0visit\0apt\0suite\0";
 
 /* Units behind a number; behind a blank only the second list. Behind those that are first in their lists a number
- * goes on: M, bn, sq. */
+ * goes on: M, bn, sq, fl. */
 static const char attached_units[] = "M\0million\0bn\0billion\0in\0inch|inches\0A\0amp_\0C\0degree_ celsius\0"
                                      "F\0degree_ fahrenheit\0";
 static const char units[] =
-    "sq\0square\0m\0meter_\0km\0kilometer_\0cm\0centimeter_\0mm\0millimeter_\0nm\0nanometer_\0um\0micrometer_\0"
+    "sq\0square\0fl\0fluid\0m\0meter_\0km\0kilometer_\0cm\0centimeter_\0mm\0millimeter_\0nm\0nanometer_\0"
+    "um\0micrometer_\0"
     "kg\0kilogram_\0g\0gram_\0mg\0milligram_\0ug\0microgram_\0lb\0pound_\0lbs\0pound_\0oz\0ounce_\0ft\0foot|feet\0"
     "yd\0yard_\0mi\0mile_\0mph\0mile_ per hour\0kph\0kilometer_ per hour\0L\0liter_\0l\0liter_\0ml\0milliliter_\0"
-    "mL\0milliliter_\0cl\0centiliter_\0dl\0deciliter_\0gal\0gallon_\0s\0second_\0sec\0second_\0secs\0second_\0"
+    "mL\0milliliter_\0cl\0centiliter_\0dl\0deciliter_\0dL\0deciliter_\0gal\0gallon_\0s\0second_\0sec\0second_"
+    "\0secs\0second_\0"
     "ms\0millisecond_\0us\0microsecond_\0ns\0nanosecond_\0min\0minute_\0mins\0minute_\0h\0hour_\0hr\0hour_\0"
     "hrs\0hour_\0Hz\0hertz\0kHz\0kilohertz\0MHz\0megahertz\0GHz\0gigahertz\0kB\0kilobyte_\0KB\0kilobyte_\0"
     "MB\0megabyte_\0GB\0gigabyte_\0TB\0terabyte_\0kbps\0kilobit_ per second\0Mbps\0megabit_ per second\0"
@@ -81,6 +84,9 @@ static const char units[] =
     "px\0pixel_\0cal\0calorie_\0kcal\0kilocalorie_\0rpm\0are pee em\0bpm\0bee pee em\0fps\0eff pee ess\0"
     "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0yr\0year_\0yrs\0year_\0tbsp\0tablespoon_\0"
     "tsp\0teaspoon_\0";
+
+/* What a letter stands before that it begins with; as a list of units. */
+static const char lettered[] = "test\0\0tests\0\0day\0\0boy\0\0shaped\0\0";
 
 /* Capitals that are read letter by letter although a word could look so, words of two letters, of three that begin with
  * a vowel and others that do not look like words, and words unless the word before is not in capitals. */
@@ -127,6 +133,34 @@ static void say_letter(labial_words_reading_t *reading, labial_words_letter_t le
     labial_words_say(reading, labial_words_listed(letter_names, letter.letter - 1u), SAID_PLAIN, letter.character);
 }
 
+/* Vowels and y, a bit for each by its number. */
+#define VOWELS_AND_Y 0x02208222ul
+
+/* Reads one of a letter that is drawn out, as in "sooo", which is the last one of a run and before `here`; of e and o
+ * two within a word, as in "goood". What begins with I, V or X may be a number. */
+static void shorten(labial_words_place_t *here, run_t *run, unsigned code)
+{
+    const labial_words_letter_t *const letters = run->letters;
+    unsigned i, last, vowel_count = 0;
+    int goes_on;
+    if (run->count < 3u)
+        return;
+    last = letters[run->count - 1u].letter;
+    if (letters[run->count - 2u].letter != last || letters[run->count - 3u].letter != last)
+        return;
+    for (i = 0; i < run->count; i++)
+        vowel_count += (unsigned)(VOWELS_AND_Y >> (letters[i].letter & 31u)) & 1u;
+    if (vowel_count == 0u || letters[0].letter == 9u || letters[0].letter == 22u || letters[0].letter == 24u)
+        return;
+    while (here->code == code)
+        labial_words_advance(here);
+    goes_on = labial_words_is_latin(here->code);
+    if (run->count == 3u && !goes_on)
+        return;
+    run->count -= goes_on && (last == 5u || last == 15u) ? 1u : 2u;
+    run->small &= ((uint32_t)1 << run->count) - 1u;
+}
+
 /* Takes the letters that belong together from a letter on, up to a capital behind a small letter. */
 static void take_run(labial_words_place_t *here, run_t *run)
 {
@@ -153,6 +187,7 @@ static void take_run(labial_words_place_t *here, run_t *run)
         run->count++;
         before = code;
         labial_words_advance(here);
+        shorten(here, run, code);
     }
     run->is_title = run->count > 1u && run->small == (0xffffffffu >> (LABIAL_WORDS_LETTERS - run->count) & ~1u);
 }
@@ -241,7 +276,9 @@ static unsigned spelt_letters(const run_t *run, unsigned follows, unsigned shout
         if ((run->small & (((uint32_t)1 << count) - 1u)) != 0u)
             return spelt_small_letters(run);
     }
-    if (count < 2u || count > 5u)
+    if (count == 1u)
+        return run->before == '&' || labial_words_is_latin(run->before);
+    if (count > 5u)
         return 0;
     if ((run->before == '&' || follows == '&') && count == run->count)
         return count;
@@ -288,7 +325,7 @@ static void read_pointed(labial_words_reading_t *reading, unsigned after)
 {
     labial_words_place_t *here = &reading->here, next = *here;
     const unsigned first = labial_words_small_letter(here->code);
-    unsigned second;
+    unsigned second, is_hour;
     const char *meaning = NULL;
     labial_words_advance(&next);
     labial_words_advance(&next);
@@ -304,14 +341,22 @@ static void read_pointed(labial_words_reading_t *reading, unsigned after)
         return;
     }
     labial_words_advance(&next);
-    if ((first == 'a' || first == 'p') && second == 'm' && after == AFTER_TIME && !has_pointed(&next))
+    is_hour = (first == 'a' || first == 'p') && second == 'm' && !has_pointed(&next) &&
+              (after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_TIME);
+    if (is_hour && after == AFTER_TIME)
         labial_words_take_back(reading);
     for (;;) {
         labial_words_say_here(reading, labial_words_listed(letter_names, labial_words_small_letter(here->code) - 'a'));
         labial_words_advance(here);
         if (!has_pointed(here))
-            return;
+            break;
         labial_words_advance(here);
+    }
+    next = *here;
+    if (is_hour && here->code == '.') {
+        labial_words_advance(here);
+        if (!labial_words_read_range(reading))
+            *here = next;
     }
 }
 
@@ -349,10 +394,10 @@ static int read_unit(labial_words_reading_t *reading, unsigned after)
         context->after = AFTER_NOTHING;
         return 0;
     }
-    if (name == units + sizeof "sq" || name == attached_units + sizeof "M" ||
+    if (name == units + sizeof "sq" || name == units + sizeof "sq\0square\0fl" || name == attached_units + sizeof "M" ||
         name == attached_units + sizeof "M\0million\0bn")
         context->after = AFTER_NUMBER;
-    if (larger == 'h' && name == units + sizeof "sq\0square\0m")
+    if (larger == 'h' && name == units + sizeof "sq\0square\0fl\0fluid\0m")
         name = "minute_";
     context->tail = 0;
     context->currency = name[1] == 'o' && name[0] != 'p' ? (uint8_t)name[0] : 0u;
@@ -375,7 +420,7 @@ static int is_spelt_in_address(const run_t *run)
     for (i = 0; i < run->count; i++) {
         if (run->letters[i].letter == 27u)
             return 0;
-        vowel_count += (0x02208222u >> run->letters[i].letter) & 1u; /* a e i o u y */
+        vowel_count += (unsigned)(VOWELS_AND_Y >> run->letters[i].letter) & 1u;
     }
     return run->count == 2u ? !labial_words_is_listed(run->capitals, 2, "co\0go\0me\0")
                             : run->count <= 4u && vowel_count == 0u;
@@ -550,7 +595,7 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
         return 1;
     }
     list = meanings[(run->letters[0].letter - 1u) % 26u];
-    found = find_run(run, list, 2);
+    found = run->before == ';' || run->before == '&' ? -1 : find_run(run, list, 2);
     if (found >= 0) {
         list = labial_words_listed(list, 2u * (unsigned)found + 1u);
         if (*list == '+') {
@@ -570,14 +615,32 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     return count > 0u;
 }
 
+/* Moves from a letter to the word behind a hyphen that begins with it, "w-what", but for names such as "t-test". */
+static void pass_stutter(labial_words_place_t *here)
+{
+    for (;;) {
+        labial_words_place_t next = *here, word;
+        labial_words_advance(&next);
+        if (next.code != '-' || labial_words_is_inside(here->before))
+            return;
+        labial_words_advance(&next);
+        word = next;
+        if (next.code != labial_words_small_letter(here->code) || takes_unit(&word, lettered))
+            return;
+        *here = next;
+    }
+}
+
 void labial_words_read_letters(labial_words_reading_t *reading)
 {
     labial_words_context_t *const context = reading->context;
-    labial_words_place_t next = reading->here;
+    labial_words_place_t next;
     const unsigned after = labial_words_forget(reading), shouting = context->shouting, named = context->named;
     unsigned number, first;
     run_t run;
     context->named = 0;
+    pass_stutter(&reading->here);
+    next = reading->here;
     labial_words_advance(&next);
     if (has_pointed(&next)) {
         read_pointed(reading, after);

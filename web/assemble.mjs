@@ -11,9 +11,10 @@
 //     node assemble.mjs readme FILE README NAME       the part of README that is about the package of this name
 //     node assemble.mjs licence FILE LICENSE NOTICE NAME...   LICENSE, and NOTICE on the models of these names
 //     node assemble.mjs manifest FOLDER PACKAGES NAME VERSION   package.json, and index.d.ts where PACKAGES has it
-import { readFileSync, writeFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
-import { constants, deflateRawSync } from "node:zlib";
 import { binary } from "./layout.mjs";
 import { unpack } from "./unpack.js";
 
@@ -57,28 +58,23 @@ function signed(value) {
     return text;
 }
 
-/** A raw deflate stream, split at multiples of 512 bytes, of large ones 2,048, where new codes save bytes: 1 % shorter
- * than zlib's. */
-function deflated(bytes) {
-    const [step, most] = bytes.length < 2 ** 16 ? [512, 48] : [2048, 12]; // which takes a second for the largest
-    const steps = Math.ceil(bytes.length / step);
-    const best = [{ size: 0, parts: [] }];
-    for (let end = 1; end <= steps; end++) {
-        const finishFlush = end === steps ? constants.Z_FINISH : constants.Z_SYNC_FLUSH;
-        for (let begin = Math.max(0, end - most); begin < end; begin++) {
-            const options = { level: 9, memLevel: 9, finishFlush };
-            if (begin) options.dictionary = bytes.subarray(Math.max(0, begin * step - 32768), begin * step);
-            const part = deflateRawSync(bytes.subarray(begin * step, end * step), options);
-            const size = best[begin].size + part.length;
-            if (!(best[end]?.size <= size)) best[end] = { size, parts: [...best[begin].parts, part] };
-        }
+/** Bytes as an .xz file. CMake, which runs this, has the means. */
+function compressed(bytes) {
+    const folder = mkdtempSync(join(tmpdir(), "labial-"));
+    try {
+        writeFileSync(join(folder, "bytes"), bytes);
+        writeFileSync(join(folder, "pack.cmake"),
+            "file(ARCHIVE_CREATE OUTPUT bytes.xz PATHS bytes FORMAT raw COMPRESSION XZ COMPRESSION_LEVEL 9)\n");
+        execFileSync(process.env.CMAKE ?? "cmake", ["-P", "pack.cmake"], { cwd: folder });
+        return readFileSync(join(folder, "bytes.xz"));
+    } finally {
+        rmSync(folder, { recursive: true });
     }
-    return Buffer.concat(best[steps].parts);
 }
 
 /** The input of unpack.js. Bundlers keep a notice that begins with an exclamation mark. */
 function packed(file, bytes, notice) {
-    const text = deflated(bytes).toString("base64");
+    const text = compressed(bytes).toString("base64");
     if (!Buffer.from(unpack(text)).equals(Buffer.from(bytes))) throw new Error(`${file}: not what was packed`);
     writeFileSync(file, `/*! ${notice} */\nexport default "${text}";\n`);
 }

@@ -70,6 +70,7 @@ export type Laughter = string | ArrayBuffer | ArrayBufferView | { readonly defau
 
 /** A mouth that moves while its phonemes are still arriving. Its first frames lead from the neutral face to the motion. */
 export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
+    private constructor();
     /** Adds a phoneme, by label or number, of the current model; milliseconds from 0 to 3,600,000. Fractions of
      * milliseconds accumulate. Up to 65,536 phonemes may wait. */
     push(label: string | number, milliseconds: number, options?: { labels?: Labels; hint?: Labels }): void;
@@ -125,6 +126,7 @@ export class Stream<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
 /** The motion of a whole utterance. Frame k is due k / fps seconds after the sound begins. It begins and ends at rest, as
  * a rule 12 frames after the last segment, unless it was to be exact. */
 export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
+    private constructor();
     readonly output: O;
     /** Frames per second. */
     readonly fps: number;
@@ -436,6 +438,7 @@ type Wasm = ArrayBuffer | ArrayBufferView | object;
 
 /** The library. One serves any number of streams. */
 export class Labial {
+    private constructor();
     /** The library, with the speech model. `laughter` is the laughter model, or a function that loads it when laughter()
      * is called for the first time: `() => import("labial-laughter")`; `hearing` is likewise the package labial-hearing, for
      * hear(). `wasm` is a build of your own: its bytes, or the compiled module. */

@@ -1,6 +1,6 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
 import {
-    CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, heard, shown,
+    CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, elapsed, heard, shown,
 } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
@@ -31,7 +31,7 @@ const LABEL_MAX = 256;
 /** Most bytes of a model. */
 const MODEL_MAX = 2 ** 26;
 /** What other packages take, since their own sources would be copies. */
-const TOOLS = { LabialError, Memory, allowed, amount, shown, unpack, timings };
+const TOOLS = { LabialError, Memory, allowed, amount, elapsed, heard, shown, unpack, timings };
 const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model for streams, bundled or loaded. */
@@ -104,11 +104,11 @@ export class Labial {
     }
 
     async hear(source, options) {
-        return (await given(this.#hearing, NO_HEARING)).hear(TOOLS, this, source, options);
+        return (await given(this.#hearing, NO_HEARING, "hear")).hear(TOOLS, this, source, options);
     }
 
     async words() {
-        return (await given(this.#words, NO_WORDS)).words(TOOLS, this);
+        return (await given(this.#words, NO_WORDS, "words")).words(TOOLS, this);
     }
 
     async voice(options) {
@@ -353,11 +353,12 @@ export class Labial {
     }
 }
 
-/** What load() was given, or what a function that it was given loads; without it, the error `missing`. */
-async function given(source, missing) {
+/** What load() was given, or what a function that it was given loads; without it, or without its `call`, the error
+ * `missing`. */
+async function given(source, missing, call = "") {
     let found = await (typeof source === "function" ? source() : source);
     while (found && found.default) found = found.default; // a module, or one inside another as CommonJS has it
-    if (!found) throw new LabialError(missing);
+    if (!found || (call && typeof found[call] !== "function")) throw new LabialError(missing);
     return found;
 }
 

@@ -1,6 +1,6 @@
 // <labial-mouth>: draws a mouth from a track, a stream, a hearing or a voice in step with its sound. modules.d.ts
 // documents it.
-import { heard } from "./memory.js";
+import { heard, shown } from "./memory.js";
 import { CHANNELS, createMouth, follow } from "./mouth.js";
 
 /** Milliseconds in which a mouth comes to rest. */
@@ -234,7 +234,7 @@ export class LabialMouth extends Base {
     }
 
     set track(track) {
-        this.#take(track, track && new TrackPlayer(track));
+        this.#set(track, TrackPlayer, "at");
     }
 
     get stream() {
@@ -242,7 +242,7 @@ export class LabialMouth extends Base {
     }
 
     set stream(stream) {
-        this.#take(stream, stream && new StreamPlayer(stream));
+        this.#set(stream, StreamPlayer, "tick");
     }
 
     get faps() {
@@ -254,7 +254,7 @@ export class LabialMouth extends Base {
     }
 
     set hearing(hearing) {
-        this.#take(hearing, hearing && new HearingPlayer(hearing));
+        this.#set(hearing, HearingPlayer, "at");
     }
 
     get voice() {
@@ -262,7 +262,7 @@ export class LabialMouth extends Base {
     }
 
     set voice(voice) {
-        this.#take(voice, voice && new VoicePlayer(voice));
+        this.#set(voice, VoicePlayer, "at");
     }
 
     show(faps) {
@@ -292,6 +292,14 @@ export class LabialMouth extends Base {
     #leave() {
         const next = this.#player?.next;
         this.#take(next && this.#source, next);
+    }
+
+    /** Takes a source from its owner. */
+    #set(source, Player, call) {
+        if (source && typeof source[call] !== "function") {
+            throw new TypeError(`the source is ${shown(source)}, which has no ${call}(): set what a promise resolves to`);
+        }
+        this.#take(source, source && new Player(source));
     }
 
     #take(source, player) {

@@ -146,6 +146,9 @@ export function shown(value) {
     return text.length <= 40 ? text : `${text.slice(0, 37)}...`;
 }
 
+/** Milliseconds of a clock that nobody sets. An AudioWorklet has another one alone. */
+export const elapsed = () => (globalThis.performance ?? Date).now();
+
 /** Of the elements whose sound has ended: when it was seen first, milliseconds. */
 const ends = new WeakMap();
 
@@ -156,7 +159,7 @@ export function heard(audio) {
         ends.delete(audio);
         return audio.currentTime;
     }
-    const now = performance.now();
+    const now = elapsed();
     if (!ends.has(audio)) ends.set(audio, now);
     return audio.currentTime + (now - ends.get(audio)) / 1000;
 }

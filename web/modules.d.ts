@@ -65,7 +65,7 @@ declare module "labial/labial-face.js" {
      * replaces that.
      *
      * It is light or dark as `color-scheme` says. CSS variables: --labial-skin, --labial-hair, --labial-lips, --labial-iris,
-     * --labial-backdrop-top, --labial-backdrop-bottom; `::part(caption)` is the caption. */
+     * --labial-clothes, --labial-backdrop-top, --labial-backdrop-bottom; `::part(caption)` is the caption. */
     export class LabialFace extends LabialMouth {
         /** Captions: the words that are spoken, by `position`. They are shown line by line, and in
          * a line of several words the one that is spoken is marked. null for none, and cancel() sets that. */

@@ -1,6 +1,6 @@
 /*
- * start.c - RISC-V: reset, what a trap goes to, and minstret, the processor's own counter of instructions. It is 64 bits
- * long; 32 suffice for differences, which makes stretches of up to 2^32 - 1 instructions.
+ * start.c - RISC-V: reset, what a trap goes to, and minstret, the processor's own counter of instructions. It is 64
+ * bits long; 32 suffice for differences, which makes stretches of up to 2^32 - 1 instructions.
  */
 #include "target.h"
 

@@ -4,10 +4,10 @@
  *     cc -std=c99 -Iinclude examples/beside/toy.c lib/beside.c -o toy
  *     printf 'say Mama may pop.\nplay 9000\n' | ./toy 8765
  *
- * Standard input has a command in each line: "say TEXT" and "stop" go to the server, with "stop" the toy drops the sound
- * that it has not played; "play MS" lets time pass, at most until everything has been heard, as fast as the server sends.
- * Options behind the port: "lose N" loses every Nth packet of lips, "jitter" makes the loudspeaker's clock uneven.
- * Without a server, or when it goes or falls silent, it says so and ends with status 1.
+ * Standard input has a command in each line: "say TEXT" and "stop" go to the server, with "stop" the toy drops the
+ * sound that it has not played; "play MS" lets time pass, at most until everything has been heard, as fast as the
+ * server sends. Options behind the port: "lose N" loses every Nth packet of lips, "jitter" makes the loudspeaker's
+ * clock uneven. Without a server, or when it goes or falls silent, it says so and ends with status 1.
  *
  * A line of output is 20 ms: the number of the sample that is heard, 1 if the mouth speaks, the packet's bytes, and the
  * servos' pulses in microseconds.
@@ -36,8 +36,8 @@
 #define PATIENCE 20 /* seconds in which a server that is asked for something sends it */
 #endif
 
-/* Pulses of the servos for the bytes 0 and 255, to be found by trial, and the largest changes in 20 ms that they follow:
- * `slew` of face.toml. */
+/* Pulses of the servos for the bytes 0 and 255, to be found by trial, and the largest changes in 20 ms that they
+ * follow: `slew` of face.toml. */
 static const int32_t at_0[OUTPUTS] = { 1400, 1300 }, at_255[OUTPUTS] = { 1900, 1700 };
 static const uint8_t limits[OUTPUTS] = { LABIAL_BESIDE_CHANGE(100, 1400, 1900), LABIAL_BESIDE_CHANGE(80, 1300, 1700) };
 

@@ -42,6 +42,8 @@ extern "C" {
 /* Microseconds of the servo's pulses for the bytes 0 and 255. */
 #ifndef MOUTH_AT_0
 #define MOUTH_AT_0 1400
+#endif
+#ifndef MOUTH_AT_255
 #define MOUTH_AT_255 1900
 #endif
 
@@ -58,8 +60,8 @@ extern "C" {
 /* What mouth_playing() is told of sound that did not come from the server: LABIAL_CLOCK_NONE. */
 #define MOUTH_NONE (-1)
 
-/* A connection begins, with sound of so many samples per second; the mouth eases to rest from where it is. Returns 0, or
- * a negative number for a rate that cannot be (labial/result.h). */
+/* A connection begins, with sound of so many samples per second; the mouth eases to rest from where it is. Returns 0,
+ * or a negative number for a rate that cannot be (labial/result.h). */
 int mouth_begin(uint32_t samples_per_second);
 
 /* A packet of lips. Returns as labial_beside_push(). */

@@ -35,8 +35,8 @@ static atomic_flag hears = ATOMIC_FLAG_INIT;
 static labial_hear_t hear;
 static uint32_t workspace[HEAR_SMALL_WORKSPACE_SIZE / 4];
 
-/* Shared. Hearing is ended where the sound is, and begins again with the next: from sample `base` on, frames are counted
- * from `base_frame`; those of the sound before end there. */
+/* Shared. Hearing is ended where the sound is, and begins again with the next: from sample `base` on, frames are
+ * counted from `base_frame`; those of the sound before end there. */
 static struct {
     uint32_t samples_per_second; /* 0 before lips_begin() */
     uint32_t begins;             /* calls of that */

@@ -14,13 +14,13 @@
  *     // where lips are moved or drawn, 50 times a second or as often as you like
  *     lips_frame(esp_timer_get_time(), faps);
  *
- * Feed sound before it is heard, by the latency of hearing (labial_hear_latency(); docs/hearing.md says how long it is):
- * of sound that comes later, the lips are late by what is missing. The clock is the loudspeaker: what is written is
- * heard when what was written before has ended, or at once if it has. So lips_playing() takes the time before the write,
- * and need not know the size of the driver's buffer.
+ * Feed sound before it is heard, by the latency of hearing (labial_hear_latency(); docs/hearing.md says how long it
+ * is): of sound that comes later, the lips are late by what is missing. The clock is the loudspeaker: what is written
+ * is heard when what was written before has ended, or at once if it has. So lips_playing() takes the time before the
+ * write, and need not know the size of the driver's buffer.
  *
- * Where a sound ends, lips_frame() ends hearing, so that its last frames are known, too: when a frame is due that is not
- * known, and the next sound is late (LIPS_DRY). What comes then is heard anew.
+ * Where a sound ends, lips_frame() ends hearing, so that its last frames are known, too: when a frame is due that is
+ * not known, and the next sound is late (LIPS_DRY). What comes then is heard anew.
  *
  * Sound that is fed and never played, because a queue was emptied, moves nothing. When everything that was given to the
  * loudspeaker has been heard, the mouth eases to the neutral face, and from there into the next words.

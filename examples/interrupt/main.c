@@ -86,8 +86,8 @@ void board_interrupt(unsigned number)
 }
 
 /* Phoneme `i` of what is said, which lasts a frame, and how long after the one before it comes: each time differently,
- * and so long that the queue is rarely full. Otherwise pushes would follow right after ticks, and no interrupt would ever
- * fall into one. */
+ * and so long that the queue is rarely full. Otherwise pushes would follow right after ticks, and no interrupt would
+ * ever fall into one. */
 static unsigned phoneme_at(uint32_t i)
 {
     return (unsigned)(i * 7u % speech_en.phoneme_count);

@@ -22,8 +22,8 @@ static int32_t pulses[FACE_OUTPUTS];
 
 /* ---- The text of a run under QEMU -------------------------------------------------------------------------------- */
 
-/* A board without a debugger must not print text; so without MICROBIT_TRACE these calls are empty, and the firmware waits
- * for its button instead of ending. */
+/* A board without a debugger must not print text; so without MICROBIT_TRACE these calls are empty, and the firmware
+ * waits for its button instead of ending. */
 #if defined(MICROBIT_TRACE)
 
 static uint32_t faces, work, longest;

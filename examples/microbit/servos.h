@@ -26,8 +26,8 @@ typedef struct {
     uint16_t measured[SERVOS_COUNT];
 } servos_face_t;
 
-/* Starts the timers, for a face that is shown until others come, by the servos that are attached: none yet. Lengths beyond
- * SERVOS_PULSE_MAX, and negative ones, are cut to that, here and in servos_push(). */
+/* Starts the timers, for a face that is shown until others come, by the servos that are attached: none yet. Lengths
+ * beyond SERVOS_PULSE_MAX, and negative ones, are cut to that, here and in servos_push(). */
 void servos_start(const int32_t lengths[SERVOS_COUNT]);
 
 /* Attaches the first `count` servos: they have pulses from now on. */

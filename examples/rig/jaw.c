@@ -1,6 +1,6 @@
 /*
- * jaw.c - one servo: the whole rig is one line. Prints the pulse of every period of 20 ms in microseconds, from the first
- * frame on until the servo is at rest.
+ * jaw.c - one servo: the whole rig is one line. Prints the pulse of every period of 20 ms in microseconds, from the
+ * first frame on until the servo is at rest.
  *
  *     labial-rig-jaw
  */

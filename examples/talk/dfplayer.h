@@ -1,6 +1,6 @@
 /*
- * dfplayer.h - a DFPlayer Mini plays a file of its card: the command's bytes, for a serial line of 9,600 baud, 8 bits, no
- * parity, one stop bit, from the board's TX to the module's RX through a resistor of 1 kilohm.
+ * dfplayer.h - a DFPlayer Mini plays a file of its card: the command's bytes, for a serial line of 9,600 baud, 8 bits,
+ * no parity, one stop bit, from the board's TX to the module's RX through a resistor of 1 kilohm.
  */
 #ifndef EXAMPLE_DFPLAYER_H
 #define EXAMPLE_DFPLAYER_H

@@ -19,9 +19,11 @@ enum {
     TALK_JAW = 0
 };
 
-/* What the bytes 0 and 255 of jaw stand for. A program may define both before it includes this file. */
+/* What the bytes 0 and 255 of jaw stand for. A program may define them before it includes this file. */
 #ifndef TALK_JAW_AT_0
 #define TALK_JAW_AT_0 1400
+#endif
+#ifndef TALK_JAW_AT_255
 #define TALK_JAW_AT_255 1900
 #endif
 

@@ -8,9 +8,9 @@
  *     pin 1   (TX) through 1 kilohm to the DFPlayer's RX
  *     pin 2   button to ground
  *
- * Timer 1 makes the pulses by itself, in steps of half a microsecond, 50 a second: one for each frame. The program waits
- * for the end of each period and puts the next pulse's length into the compare register, from which the timer takes it
- * when the next period begins. There are no interrupts.
+ * Timer 1 makes the pulses by itself, in steps of half a microsecond, 50 a second: one for each frame. The program
+ * waits for the end of each period and puts the next pulse's length into the compare register, from which the timer
+ * takes it when the next period begins. There are no interrupts.
  */
 #ifndef F_CPU
 #define F_CPU 16000000ul
@@ -37,7 +37,8 @@
 
 static labial_player_t player;
 
-/* The pulse of the next period, in microseconds. In fast PWM the pin is high for a count more than the register says. */
+/* The pulse of the next period, in microseconds. In fast PWM the pin is high for a count more than the register
+ * says. */
 static void servo_show(int32_t pulse)
 {
     OCR1A = (uint16_t)((uint16_t)pulse * COUNTS_PER_US - 1u);

@@ -11,7 +11,8 @@
  *   bytes 4-7    size of the whole model in bytes, uint32
  *   bytes 8-11   CRC-32 (the one of zlib and PNG) of all that follows, uint32
  *   bytes 12-27  format, frames_per_second, component_count (uint16); phoneme_count, class_count, state_count,
- *                predecessor_fours, search_stride, silence, mixture_mean, kernel_taps, kernel_stride, kernel_behind (uint8)
+ *                predecessor_fours, search_stride, silence, mixture_mean, kernel_taps, kernel_stride, kernel_behind
+ *                (uint8)
  *   byte 28      which optional tables follow: 1 contexts, 2 slopes, 8 protrusion; 4: pairs have two knots
  *   byte 29      floor_count (uint8)
  *   bytes 30-31  pair_count (uint16)
@@ -19,8 +20,8 @@
  *   bytes 46-47  0
  *   then the tables of labial_model_t in their order, each padded with zeros to a multiple of four bytes: phonemes,
  *   components, contexts, shapes, slopes, kernels, pair_keys, pairs, floors, contacts, protrusion; and for
- *   each channel centre (int16), shape_scale, slope_scale, kernel_scale, pair_scale, both motion_scale (uint16), contact_weight
- *   (uint8), 0 (uint8), then emissions, states, transitions, initials
+ *   each channel centre (int16), shape_scale, slope_scale, kernel_scale, pair_scale, both motion_scale (uint16),
+ *   contact_weight (uint8), 0 (uint8), then emissions, states, transitions, initials
  */
 #ifndef LABIAL_BLOB_H
 #define LABIAL_BLOB_H

@@ -6,24 +6,25 @@
 
 #include <stdint.h>
 
-/* 1 builds the published method to the letter (docs/method.md): each unit is searched and solved as a whole when its last
- * frame is known, and cross-faded with the next. LABIAL_WINDOW, LABIAL_LAG and LABIAL_SEARCHED have no effect then. */
+/* 1 builds the published method to the letter (docs/method.md): each unit is searched and solved as a whole when its
+ * last frame is known, and cross-faded with the next. LABIAL_WINDOW, LABIAL_LAG and LABIAL_SEARCHED have no effect
+ * then. */
 #ifndef LABIAL_PAPER
 #define LABIAL_PAPER 0
 #endif
 
 /* How many frames ahead of the delivered ones the trajectory's backward pass starts, 1 .. 48. Each frame makes the
- * motion smoother and costs a frame of delay and 8 bytes of workspace in each channel. With the bundled models 3 frames leave an
- * error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more.
+ * motion smoother and costs a frame of delay and 8 bytes of workspace in each channel. With the bundled models 3 frames
+ * leave an error of .2 % of a channel's range (RMS); the stiffer models of the published method need 16 frames or more.
  * Where the delay is longer than LABIAL_REACH, all frames of labial_visemes() are silence. */
 #ifndef LABIAL_WINDOW
 #define LABIAL_WINDOW 3
 #endif
 
 /* How many frames after a step the search decides its state, if the unit does not end earlier, 0 .. 40. Each frame
- * makes the path more probable and costs a frame of delay, 32 bytes of workspace and 11 in each channel; with the bundled models the
- * difference is not visible. With a lag as long as the longest unit, the states of each unit are the most probable path
- * through it (Viterbi) among the states that LABIAL_SEARCHED allows. */
+ * makes the path more probable and costs a frame of delay, 32 bytes of workspace and 11 in each channel; with the
+ * bundled models the difference is not visible. With a lag as long as the longest unit, the states of each unit are the
+ * most probable path through it (Viterbi) among the states that LABIAL_SEARCHED allows. */
 #ifndef LABIAL_LAG
 #define LABIAL_LAG 0
 #endif
@@ -55,8 +56,8 @@
 #endif
 
 /* Which calls on a stream take the lock that the program provides as labial_lock() and labial_unlock() (labial.h):
- * 0: none, no two calls overlap; 1: all but labial_tick(), which interrupts the others and is held off by the lock; 2: all
- * calls, from any tasks or threads. */
+ * 0: none, no two calls overlap; 1: all but labial_tick(), which interrupts the others and is held off by the lock; 2:
+ * all calls, from any tasks or threads. */
 #ifndef LABIAL_LOCKS
 #define LABIAL_LOCKS 0
 #endif
@@ -68,14 +69,14 @@
 #define LABIAL_HEAR_SUMS 0
 #endif
 
-/* Units of a layer that a network of hearing may have, a multiple of four, 80 .. 252. Above 128 each four cost 16 bytes of
- * a stream of sound: hear_small and hear_large have 68 and 76 units, hear_host and hear_ahead 192. */
+/* Units of a layer that a network of hearing may have, a multiple of four, 80 .. 252. Above 128 each four cost 16 bytes
+ * of a stream of sound: hear_small and hear_large have 68 and 76 units, hear_host and hear_ahead 192. */
 #ifndef LABIAL_HEAR_UNITS_MAX
 #define LABIAL_HEAR_UNITS_MAX 128
 #endif
 
-/* These values do not compile: numbers out of range, sums without parentheses (which the macros would break apart), and
- * unsigned numbers. */
+/* The build fails for values out of range, sums without parentheses (which the macros would break apart), and unsigned
+ * numbers. */
 #define LABIAL_IS_NUMBER_(x, least, most) (x >= least && (x) <= most && 2 * x * 2 + 1 == 4 * (x) + 1 && -1 - (x) < 0)
 #if !LABIAL_IS_NUMBER_(LABIAL_PAPER, 0, 1)
 #error "LABIAL_PAPER must be a number from 0 to 1."

@@ -27,12 +27,13 @@
  *      ahead + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(range, slew, acceleration) ticks later, and
  *      labial_face_tick() returns LABIAL_DONE; after a cancel, its own time stands for hold and ease. Where several of
  *      the last frames came between two ticks, it takes up to `ahead` ticks more.
- *   5. Where one frame comes before each tick, none is lost: frame k is what the outputs are on the way to `ahead` ticks
- *      after it came.
+ *   5. Where one frame comes before each tick, none is lost: frame k is what the outputs are on the way to `ahead`
+ *      ticks after it came.
  *
- * At power-up nobody knows where a servo is. With its first pulse it goes to that pulse's angle as fast as it can, and no
- * program can prevent that. What a program can do is send the pulse of rest first, to one servo after the other, before
- * anything else moves: labial_face_soft_start(). A servo that was at rest when the power went then does not move at all.
+ * At power-up nobody knows where a servo is. With its first pulse it goes to that pulse's angle as fast as it can, and
+ * no program can prevent that. What a program can do is send the pulse of rest first, to one servo after the other,
+ * before anything else moves: labial_face_soft_start(). A servo that was at rest when the power went then does not move
+ * at all.
  *
  * Integers only, no allocation, no state but the structure and its memory, the same bits on every target; linked only
  * when used. Calls on one face must not overlap. Neither the order of calls nor FAPs, values and times are trusted; the
@@ -78,8 +79,9 @@ typedef struct labial_face labial_face_t;
 /* Most frames of look-ahead. */
 #define LABIAL_FACE_AHEAD_MAX 1000u
 
-/* Bytes of memory of a face of so many outputs that looks `ahead` frames ahead, a constant expression when both are: 4 for
- * each output's value, its change, what is wanted of it, and each of ahead + 1 frames. labial_face_t has 40 more. */
+/* Bytes of memory of a face of so many outputs that looks `ahead` frames ahead, a constant expression when both are: 4
+ * for each output's value, its change, what is wanted of it, and each of ahead + 1 frames. labial_face_t has 40
+ * more. */
 #define LABIAL_FACE_SIZE(outputs, ahead) ((size_t)4 * (size_t)(outputs) * ((size_t)(ahead) + 4u))
 
 /*
@@ -93,13 +95,13 @@ typedef struct labial_face labial_face_t;
                   : 2)
 
 /*
- * Prepares a face at rest. `frames_per_second` is that of the source, 1 .. 1000: for labial_face_due() alone. `ahead` is
- * how many frames after a frame are known when it is shown, 0 .. LABIAL_FACE_AHEAD_MAX: slow servos need it to close in
- * time (labial_rig_apply_ahead()), and so does a source that delivers several frames at a time. The face is late by as
- * many, and the sound must be delayed.
+ * Prepares a face at rest. `frames_per_second` is that of the source, 1 .. 1000: for labial_face_due() alone. `ahead`
+ * is how many frames after a frame are known when it is shown, 0 .. LABIAL_FACE_AHEAD_MAX: slow servos need it to close
+ * in time (labial_rig_apply_ahead()), and so does a source that delivers several frames at a time. The face is late by
+ * as many, and the sound must be delayed.
  *
- * `memory` of `size` bytes, at least LABIAL_FACE_SIZE(outputs, ahead), belongs to the face from now on, and the rig must
- * stay where it is.
+ * `memory` of `size` bytes, at least LABIAL_FACE_SIZE(outputs, ahead), belongs to the face from now on, and the rig
+ * must stay where it is.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RIG (no outputs), LABIAL_ERROR_FRAME_RATE, LABIAL_ERROR_RANGE
  * (`ahead`) or LABIAL_ERROR_WORKSPACE (memory). After an error the other calls return LABIAL_ERROR_STATE.
@@ -108,17 +110,17 @@ int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned fram
                      int32_t *memory, size_t size);
 
 /*
- * Takes a frame: the callback of a stream or of hearing, with the face as its `user`. The frame's number does not matter.
- * Frames wait for their ticks, one each; of more than `ahead` + 1 the oldest are passed over, so that the face is never
- * later than that. A face that is not initialised takes none. Sounds are not known here: outputs with `visemes` need
- * labial_face_visemes().
+ * Takes a frame: the callback of a stream or of hearing, with the face as its `user`. The frame's number does not
+ * matter. Frames wait for their ticks, one each; of more than `ahead` + 1 the oldest are passed over, so that the face
+ * is never later than that. A face that is not initialised takes none. Sounds are not known here: outputs with
+ * `visemes` need labial_face_visemes().
  */
 void labial_face_frame(void *face, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 
 /*
- * The same for a frame of which it is known what sounds it shows, so that outputs with `visemes` follow them: `shares` are
- * LABIAL_VISEMES of them, as labial_visemes() gives them; NULL where they are not known. For a callback of the program's
- * own:
+ * The same for a frame of which it is known what sounds it shows, so that outputs with `visemes` follow them: `shares`
+ * are LABIAL_VISEMES of them, as labial_visemes() gives them; NULL where they are not known. For a callback of the
+ * program's own:
  *
  *     static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
  *     {
@@ -132,17 +134,18 @@ void labial_face_frame(void *face, uint32_t frame, const int16_t faps[LABIAL_CHA
 int labial_face_visemes(labial_face_t *face, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /*
- * Takes a frame whose outputs are known: `wanted` has a value for each, in the rig's units, as labial_beside_value() and
- * labial_player_value() compute them. They go through the same limits. Values beyond an output's limits count as those.
+ * Takes a frame whose outputs are known: `wanted` has a value for each, in the rig's units, as labial_beside_value()
+ * and labial_player_value() compute them. They go through the same limits. Values beyond an output's limits count as
+ * those.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_face_values(labial_face_t *face, const int32_t *wanted);
 
 /*
- * Whether a tick is due by a clock of milliseconds that counts modulo 2^32, such as Arduino's millis(): 1 once per frame
- * period, in the first call and from then on, else 0. Call it as often as you like, and when it returns 1, let the source
- * deliver a frame and call labial_face_tick(). Without a clock, call these two once per frame period.
+ * Whether a tick is due by a clock of milliseconds that counts modulo 2^32, such as Arduino's millis(): 1 once per
+ * frame period, in the first call and from then on, else 0. Call it as often as you like, and when it returns 1, let
+ * the source deliver a frame and call labial_face_tick(). Without a clock, call these two once per frame period.
  *
  * After a delay of up to LABIAL_FACE_CATCH_UP milliseconds it returns 1 in each call until the source has caught up;
  * outputs move in none of these ticks that comes less than half a period after they last moved, since their limits are
@@ -180,25 +183,25 @@ int labial_face_skip(labial_face_t *face, unsigned count);
 
 /*
  * Drops the frames that wait; the outputs go to rest over `milliseconds`, rounded up to whole frames, 1 ..
- * LABIAL_CANCEL_MAX, or longer where their limits need it. Call it with labial_cancel() where the sound stops at once. The
- * frames of a source that eases to rest itself are taken as any others.
+ * LABIAL_CANCEL_MAX, or longer where their limits need it. Call it with labial_cancel() where the sound stops at once.
+ * The frames of a source that eases to rest itself are taken as any others.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_face_cancel(labial_face_t *face, uint32_t milliseconds);
 
 /*
- * Begins a soft start: outputs are attached one after the other, `ticks` ticks apart, which is the time that one is given
- * to get to rest; at least 1, at most 255. Output k is attached in tick k * ticks, stays at rest, and follows frames from
- * tick (k + 1) * ticks on. Call it after labial_face_init(); 25 ticks are 500 ms.
+ * Begins a soft start: outputs are attached one after the other, `ticks` ticks apart, which is the time that one is
+ * given to get to rest; at least 1, at most 255. Output k is attached in tick k * ticks, stays at rest, and follows
+ * frames from tick (k + 1) * ticks on. Call it after labial_face_init(); 25 ticks are 500 ms.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_face_soft_start(labial_face_t *face, unsigned ticks);
 
 /*
- * How many outputs may be attached, the first ones: all of them, unless a soft start has not reached the last one. Set an
- * output's value first, then attach it: let its pulses begin. 0 for a null or uninitialised face.
+ * How many outputs may be attached, the first ones: all of them, unless a soft start has not reached the last one. Set
+ * an output's value first, then attach it: let its pulses begin. 0 for a null or uninitialised face.
  */
 unsigned labial_face_attached(const labial_face_t *face);
 
@@ -210,7 +213,8 @@ unsigned labial_face_attached(const labial_face_t *face);
  */
 int labial_face_place(labial_face_t *face, const int32_t *values);
 
-/* ---- Private ------------------------------------------------------------------------------------------------------ */
+/* ---- Private
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* 40 bytes where a pointer has 4. */
 struct labial_face {

@@ -1,13 +1,13 @@
 /*
  * labial/hear_model.h - the tables of a model of hearing, as the exporter writes them and the run-time reads them.
  *
- * A model is a network that hears the features of 20 ms of sound and knows the frame of the lips that belongs to some
- * frames before. It is constant: it stays in flash and may serve any number of streams at once. Programs do not fill
- * these structures by hand: `labial export` writes a C file that does.
+ * A model is a network. It takes the features of 20 ms of sound and returns the lips of an earlier frame, `ahead`
+ * frames ago. It is constant: it stays in flash and may serve any number of streams at once. Programs do not fill these
+ * structures by hand: `labial export` writes a C file that does.
  *
  * A block is y = relu(W x + b), then z = memory(y): for each unit its own weighted sum of frames of y around the
- * present one. All blocks but the first add their input x to z. A dense layer follows, and three heads: a score for each
- * lip class, a score of closed lips, and 13 FAPs.
+ * present one. All blocks but the first add their input x to z. A dense layer follows, and three heads: a score for
+ * each lip class, a score of closed lips, and 13 FAPs.
  *
  * Number formats, the same in every table:
  *
@@ -54,9 +54,9 @@ typedef struct {
     labial_hear_dense_t dense;
     const int8_t *taps;    /* past + ahead + 1 weights of each unit, the oldest first */
     const uint8_t *shifts; /* of each unit */
-    uint8_t past;          /* how often the memory reaches back */
+    uint8_t past;          /* taps into the past */
     uint8_t ahead;         /* and ahead; past + ahead is 1 .. LABIAL_HEAR_TAPS_MAX - 1 */
-    uint8_t dilation;      /* by so many frames each, 1 and more */
+    uint8_t dilation;      /* frames from tap to tap, 1 and more */
 } labial_hear_block_t;
 
 /* A model. */

@@ -1,7 +1,7 @@
 /*
- * labial/hear_private.h - the parts of hearing, for labial/hear.h alone. They are declared so that programs can allocate a
- * stream of sound statically. All members are private and may change with any version. Each structure belongs to one file
- * of lib/.
+ * labial/hear_private.h - the parts of hearing, for labial/hear.h alone. They are declared so that programs can
+ * allocate a stream of sound statically. All members are private and may change with any version. Each structure
+ * belongs to one file of lib/.
  */
 #ifndef LABIAL_HEAR_PRIVATE_H
 #define LABIAL_HEAR_PRIVATE_H

@@ -11,8 +11,8 @@
  *     while (labial_tick(&stream) != LABIAL_DONE) // once per frame period, from the main loop or a timer
  *         wait_for_next_frame();
  *
- * A stream begins and ends with the neutral face, all FAPs 0: the first 8 frames lead from rest to the motion, and after
- * the last phoneme as many as LABIAL_EASE_FRAMES lead back.
+ * A stream begins and ends with the neutral face, all FAPs 0: the first 8 frames lead from rest to the motion, and
+ * after the last phoneme as many as LABIAL_EASE_FRAMES lead back.
  *
  * The library never allocates, keeps no state outside `stream` and `workspace`, computes in integers only and gives the
  * same bits on every target. Calls on one stream must not overlap, except those from its callback, or in a build with
@@ -58,8 +58,8 @@ extern "C" {
 #if LABIAL_LOCKS > 0
 /*
  * The lock of a stream, which the program defines: labial_lock() returns when no other call on the stream can run until
- * labial_unlock(). The library does not nest them, and holds no lock while the callback runs. `stream` is the argument of
- * the call, which may be null.
+ * labial_unlock(). The library does not nest them, and holds no lock while the callback runs. `stream` is the argument
+ * of the call, which may be null.
  *
  * - labial_tick() comes from one context at a time. With LABIAL_LOCKS 1 it takes no lock: it is an interrupt, which
  *   labial_lock() holds off (docs/porting.md). With 2 it takes the lock until it calls the callback.
@@ -77,7 +77,8 @@ void labial_unlock(const labial_t *stream);
  *
  * labial_tick() calls it last. So the callback may call any function, also on the same stream, as if the tick had
  * returned: labial_restart() is refused while frames of phonemes are still to come, and labial_init() begins with frame
- * 0 again. A labial_tick() from the callback delivers the next frame before the first tick returns, on top of its stack.
+ * 0 again. A labial_tick() from the callback delivers the next frame before the first tick returns, on top of its
+ * stack.
  */
 typedef void (*labial_frame_fn)(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 
@@ -119,12 +120,12 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
 /*
  * Selects `model`, speech or laughter, for the phonemes of the next pushes. Each model treats the other's phonemes as
  * silence; where the stream changes from one to the other, the motion fades over 8 frames. Where a p, b, m, f or v
- * comes before the end of that, lips that are apart reach it sooner, with the jaw, so that they meet. The model is trusted like that of
- * labial_init().
+ * comes before the end of that, lips that are apart reach it sooner, with the jaw, so that they meet. The model is
+ * trusted like that of labial_init().
  *
  * Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, LABIAL_ERROR_VERSION,
- * LABIAL_ERROR_FRAME_RATE (frames per second and search stride are those of the stream's first model), LABIAL_ERROR_WORKSPACE
- * (the model has more channels than the workspace holds) or LABIAL_ERROR_MODELS.
+ * LABIAL_ERROR_FRAME_RATE (frames per second and search stride are those of the stream's first model),
+ * LABIAL_ERROR_WORKSPACE (the model has more channels than the workspace holds) or LABIAL_ERROR_MODELS.
  */
 int labial_use(labial_t *stream, const labial_model_t *model);
 
@@ -153,8 +154,8 @@ int labial_push(labial_t *stream, unsigned phoneme, uint32_t milliseconds);
 unsigned labial_room(const labial_t *stream);
 
 /*
- * No more phonemes will come. After the frames of the last one the face comes to rest in LABIAL_EASE_FRAMES more, unless
- * it is the neutral one already; then the stream is done.
+ * No more phonemes will come. After the frames of the last one the face comes to rest in LABIAL_EASE_FRAMES more,
+ * unless it is the neutral one already; then the stream is done.
  *
  * Returns LABIAL_OK (also when called again), LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -165,9 +166,9 @@ int labial_end(labial_t *stream);
  * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes come too late, the stream is
  * late by one frame for each tick that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
  *
- * A face that is not at rest when a frame is missing is held for LABIAL_HOLD_TICKS ticks, counted from the last frame or
- * push; then it comes to rest in LABIAL_EASE_FRAMES ticks, each of which calls the callback. The next frames lead from
- * there to the motion as at the beginning.
+ * A face that is not at rest when a frame is missing is held for LABIAL_HOLD_TICKS ticks, counted from the last frame
+ * or push; then it comes to rest in LABIAL_EASE_FRAMES ticks, each of which calls the callback. The next frames lead
+ * from there to the motion as at the beginning.
  *
  * Returns LABIAL_OK after one call of the callback with the next frame; LABIAL_WAITING (before the first frame since
  * labial_init() or labial_restart()) or LABIAL_STARVED when it is missing; LABIAL_DONE; LABIAL_ERROR_NULL or
@@ -205,15 +206,15 @@ int labial_exact(labial_t *stream, int exact);
 
 /*
  * How far the mouth moves: every channel's distance from the neutral face, in percent of what the models learned. It is
- * 100 after labial_init(); 50 is a mumble, 130 a shout, 0 the neutral face, but for FAP 17, which follows the corners and
- * is up to 3 units off with the bundled models; more than LABIAL_ARTICULATION_MAX counts as that. Lips still meet in p,
- * b, m and the lower lip still touches the teeth in f, v: what is in contact is moved by 100 percent at most. It costs no
- * time.
+ * 100 after labial_init(); 50 is a mumble, 130 a shout, 0 the neutral face, but for FAP 17, which follows the corners
+ * and is up to 3 units off with the bundled models; more than LABIAL_ARTICULATION_MAX counts as that. Lips still meet
+ * in p, b, m and the lower lip still touches the teeth in f, v: what is in contact is moved by 100 percent at most. It
+ * costs no time.
  *
- * It may change at any time, as often as one likes: with each frame that is taken in, the articulation comes nearer to
- * the one that was told last, by up to 10 percent, so that the motion has no jolt. Frames show that
- * LABIAL_DELAY(stride) ticks later, or up to `stride` ticks less. Before the first frame, and after a cancel or a
- * restart, it is the new one at once. It holds for all models, and a cancel or a restart keeps it.
+ * Set it whenever you like: each accepted frame moves up to 10 percent towards the new value, so that the motion does
+ * not jump. Frames show that LABIAL_DELAY(stride) ticks later, or up to `stride` ticks less. Before the first frame,
+ * and after a cancel or a restart, the new value applies at once. It holds for all models, and a cancel or a restart
+ * keeps it.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */

@@ -11,8 +11,8 @@
  *   cost       1/32 nat: a negative log-probability times 32, so that smaller is better
  *   gain       of a Gaussian with standard deviation s: 2^18 / (s * sqrt 2). For a distance x in the unit of s,
  *              z = x * gain / 2^12 is in Q6 and z^2 / 2^7 is the Gaussian's exponent as a cost
- *   short gain the same in 8 bits, exponent e in the high and mantissa m in the low four: (16 + m) * 2^(12 - e), so that
- *              z = x * (16 + m) / 2^e
+ *   short gain the same in 8 bits, exponent e in the high and mantissa m in the low four: (16 + m) * 2^(12 - e),
+ *              so that z = x * (16 + m) / 2^e
  *   weight     an 8-bit minifloat, exponent e in the high and mantissa m in the low four bits: m when e is zero,
  *              (16 + m) << (e - 1) otherwise. Precisions (inverse variances) of one channel share one free scale.
  */
@@ -199,8 +199,8 @@ int labial_model_check(const labial_model_t *model);
  * the latest `search_stride` frames.
  *
  * The bundled models cost about 29,000 and 24,000, and their ticks take 14,200 at most, 15,500 where models change with
- * every phoneme. A model that labial_model_check() accepts can cost 140,000. So a program that plays foreign models compares this number with the
- * instructions that its processor has for a frame:
+ * every phoneme. A model that labial_model_check() accepts can cost 140,000. So a program that plays foreign models
+ * compares this number with the instructions that its processor has for a frame:
  *
  *     if (labial_model_load(&blob, data, size) != LABIAL_OK || labial_model_cost(&blob.model) > 50000)
  *         return -1; // 50,000 instructions 50 times a second are about a quarter of a Cortex-M0 at 16 MHz

@@ -192,8 +192,8 @@ int labial_rig_apply_visemes(const labial_rig_t *rig, const int16_t faps[LABIAL_
  * enough to `closed` (or to neutral, without `closed`) to stop in time for each of the given frames, and overshoots
  * none of them. With too few frames it does the same and is late.
  *
- * A program that plays a stream is late by as many frames as it looks ahead (labial_rig_delayed()). `labial bake` knows
- * all frames.
+ * A face (labial/face.h) keeps the frames of a stream for this, and is late by as many as it looks ahead. `labial bake`
+ * knows all frames.
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
  */
@@ -201,33 +201,13 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
                            int32_t *changes);
 
 /*
- * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives them,
- * 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
+ * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives
+ * them, 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
  */
 int labial_rig_apply_visemes_ahead(const labial_rig_t *rig, const int16_t *frames, const uint8_t *shares,
                                    uint16_t count, int32_t *values, int32_t *changes);
-
-/* Frames of a stream that are still to be shown. */
-typedef struct {
-    int16_t *frames; /* the caller's, LABIAL_CHANNELS * (ahead + 1) of them */
-    uint16_t ahead;  /* frames of look-ahead: the face is late by as many, and the sound must be delayed */
-    uint16_t held;   /* 0 at first */
-} labial_rig_delay_t;
-
-/*
- * labial_rig_apply_ahead() for a stream, in its frame callback: stores a delivered frame, and updates `values` by the
- * frame that is `ahead` frames older. At the end, call it with `faps` NULL once for each frame that is still to be
- * shown.
- *
- * It takes 26 bytes for each of ahead + 1 frames, and 4 for each of the changes; 10 frames are 200 ms and 286 bytes.
- *
- * Returns LABIAL_OK when `values` are those of a frame, LABIAL_WAITING before the first one, LABIAL_DONE when all have
- * been shown, or LABIAL_ERROR_NULL.
- */
-int labial_rig_delayed(const labial_rig_t *rig, labial_rig_delay_t *delay, const int16_t *faps, int32_t *values,
-                       int32_t *changes);
 
 #ifdef __cplusplus
 }

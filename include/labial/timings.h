@@ -4,8 +4,8 @@
  *
  *   flite     `flite -psdur`: `pau:0.220 hh:0.295 ...`, where each phoneme *ends*, in seconds. A line is one utterance,
  *             its times start from 0 again and it follows the line before.
- *   lab       `start end label [apex [word]]` per line, seconds. A line that starts with # is a comment. HTK's labels,
- *             which are called .lab, too, are told by the end of the first one.
+ *   lab       `start end label [apex [word]]` per line, seconds. A line that starts with # is a comment. HTK
+ *             files also end in .lab; the first label's end time tells them apart.
  *   htk       `start end label ...` per line, whole units of 100 ns, as HTK and HTS write them. Of a label with
  *             context, `a^b-c+d=e@...`, the phoneme is what stands between - and +.
  *   pho       MBROLA: `label milliseconds [position pitch]...` per line. `;` starts a comment, `#` alone is the flush
@@ -22,8 +22,9 @@
  * `<laugh>` or `<laugh:INTENSITY>` in the place of a phoneme's, in every format, laughs for the time that the row gives
  * it. Intensity is 0 to 1, 0.5 without it.
  *
- * The text is UTF-8 and has no control characters but tab, CR and LF. A line ends with LF; blanks, tabs and CRs separate
- * fields; a number is [-](digits[.[digits]]|.digits)[(e|E)[+|-]digits]. tests/grammar/cases.tsv has examples of it all.
+ * The text is UTF-8 and has no control characters but tab, CR and LF. A line ends with LF; blanks, tabs and CRs
+ * separate fields; a number is [-](digits[.[digits]]|.digits)[(e|E)[+|-]digits]. tests/grammar/cases.tsv has examples
+ * of it all.
  *
  * The parser holds no more than five fields of a line, so that a line may be as long as it likes and each phoneme is
  * known with the byte that completes it: the blank behind a flite token, the end of a line otherwise. Times are whole
@@ -52,7 +53,8 @@ extern "C" {
 /* Overlaps and gaps up to this many nanoseconds come from rounding. */
 #define LABIAL_TIMINGS_TOLERANCE 1000000u
 
-/* The formats; AUTO is told from the first line that is no comment. Their names, in this order, are labial_timings_format_name()'s. */
+/* The formats; AUTO is told from the first line that is no comment. Their names, in this order, are
+ * labial_timings_format_name()'s. */
 typedef enum {
     LABIAL_TIMINGS_AUTO,
     LABIAL_TIMINGS_FLITE,
@@ -87,12 +89,13 @@ const char *labial_timings_format_name(unsigned format);
 const char *labial_timings_format_help(unsigned format);
 const char *labial_timings_format_suffix(unsigned format);
 
-/* Prepares a parser. Returns LABIAL_OK, or LABIAL_ERROR_NULL. */
+/* Prepares a parser. Returns LABIAL_OK, LABIAL_ERROR_NULL, or LABIAL_ERROR_RANGE for a format that is none, with a
+ * parser for LABIAL_TIMINGS_AUTO. */
 int labial_timings_init(labial_timings_t *timings, labial_timings_format_t format);
 
 /*
- * Asks for a tier of a TextGrid, before the first byte: by its name, which must stay where it is, or by its number among
- * the interval tiers, from 1, of which the text must have as many. Null and 0 mean the rule above.
+ * Asks for a tier of a TextGrid, before the first byte: by its name, which must stay where it is, or by its number
+ * among the interval tiers, from 1, of which the text must have as many. Null and 0 mean the rule above.
  *
  * Returns LABIAL_OK, or LABIAL_ERROR_NULL for a null parser.
  */
@@ -108,11 +111,11 @@ int labial_timings_next(labial_timings_t *timings, const char *text, size_t size
                         labial_timing_t *timing);
 
 /*
- * Says that the text has ended; its last line need not end with a line feed. To be called until it returns no LABIAL_OK:
- * that `timing` holds the last one.
+ * Ends the text, whose last line need not end with a line feed. Call it until it returns something other than
+ * LABIAL_OK; each LABIAL_OK fills `timing`.
  *
- * Returns LABIAL_DONE at the end, LABIAL_STARVED where the whole text must be given once more - the first tier of a
- * TextGrid is read when it is known that there is no better one -, and errors as labial_timings_next() does.
+ * Returns LABIAL_DONE at the end; LABIAL_STARVED where the whole text must be given once more, because the first tier
+ * of a TextGrid is read only when there is no better one; and errors as labial_timings_next() does.
  */
 int labial_timings_end(labial_timings_t *timings, labial_timing_t *timing);
 
@@ -125,7 +128,8 @@ uint32_t labial_timings_line(const labial_timings_t *timings);
 /* What is wrong, one line that is valid until the parser is prepared anew; "" before an error. */
 const char *labial_timings_message(const labial_timings_t *timings);
 
-/* ---- Private ------------------------------------------------------------------------------------------------------ */
+/* ---- Private
+ * ------------------------------------------------------------------------------------------------------ */
 
 /* What a TextGrid needs beside the fields of a line. */
 struct labial_timings_grid {

@@ -9,9 +9,9 @@
  *         labial_rig_apply_visemes(&oculus, faps, shares, values);
  *     }
  *
- * The sounds are the 15 visemes of Oculus LipSync, which are the 14 of MPEG-4 (ISO/IEC 14496-2, table C.2) and silence in
- * another order. Shares are computed from the phonemes that a stream holds around the frame that it delivered last: no
- * stream grows or becomes slower by them, and the code is linked only when used.
+ * The sounds are the 15 visemes of Oculus LipSync, which are the 14 of MPEG-4 (ISO/IEC 14496-2, table C.2) and silence
+ * in another order. Shares are computed from the phonemes that a stream holds around the frame that it delivered last:
+ * no stream grows or becomes slower by them, and the code is linked only when used.
  *
  * Each sound has a dominance over its neighbours, a strength with an onset before it and a release after it (Cohen and
  * Massaro, Modeling coarticulation in synthetic visual speech, 1993): with d the milliseconds from the frame to the
@@ -71,8 +71,8 @@ extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
 /*
  * The shares of the frame that the stream delivered last, in its callback or until the next tick. `visemes` has the
  * viseme of each phoneme of `model`; numbers that are none, and frames of other models, such as laughter, count as
- * silence. The last frames before the model changes show what follows instead. As all calls, it must not run while
- * another context uses the stream.
+ * silence. The last frames before the model changes show what follows instead. In a build with LABIAL_LOCKS it takes
+ * the lock; without, as all calls, it must not run while another context uses the stream.
  *
  * It needs LABIAL_REACH of at least LABIAL_DELAY(stride); with less, and in a build with LABIAL_PAPER, all frames are
  * silence.
@@ -87,8 +87,8 @@ int labial_visemes(const labial_t *stream, const labial_model_t *model, const ui
 #define LABIAL_TONGUE_FAPS 5
 
 /*
- * The FAPs 43 to 47 of a frame from its shares: what each sound does with the tongue (docs/method.md gives the rules and
- * their source), weighted by the shares. Does nothing when a pointer is null.
+ * The FAPs 43 to 47 of a frame from its shares: what each sound does with the tongue (docs/method.md gives the rules
+ * and their source), weighted by the shares. Does nothing when a pointer is null.
  */
 void labial_tongue(const uint8_t shares[LABIAL_VISEMES], int16_t tongue[LABIAL_TONGUE_FAPS]);
 

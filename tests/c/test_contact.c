@@ -201,6 +201,12 @@ TEST(long_stops_close_at_their_end)
     }
 }
 
+/* What docs/servos.md says of a hum; would catch frames between two of its stops that are nobody's. */
+TEST(a_hum_of_short_stops_stays_closed)
+{
+    lips("t3 p3 p3 p3 p3 t3", "...xxxxxxxxxxxx...");
+}
+
 /* A borrowed frame takes over what is contact, nothing else; neither is a plain floor contact, nor its frames lent. */
 TEST(only_contact_is_borrowed)
 {

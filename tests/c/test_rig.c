@@ -377,43 +377,6 @@ TEST(acceleration_holds_for_all)
     }
 }
 
-/* A stream's frames come out in their order, as late as was asked, with what follows in sight. */
-TEST(delayed_frames_look_ahead)
-{
-    labial_rig_output_t output = plain();
-    const labial_rig_t rig = { &output, 1 };
-    int16_t frames[30][LABIAL_CHANNELS] = { { 0 } }, kept[6][LABIAL_CHANNELS];
-    labial_rig_delay_t delay = { kept[0], 5, 0 };
-    int32_t values[2], changes[2] = { 0, 0 };
-    unsigned shown = 0;
-    output.slew = 50;
-    output.acceleration = 15;
-    for (unsigned i = 0; i < 30; i++)
-        frames[i][FAP3] = (int16_t)(i % 9u < 5u ? 300 : -100);
-    labial_rig_rest(&rig, &values[0]);
-    labial_rig_rest(&rig, &values[1]);
-    for (unsigned i = 0; i < 36; i++) {
-        const int result = labial_rig_delayed(&rig, &delay, i < 30 ? frames[i] : NULL, &values[0], &changes[0]);
-        assert_int_equal(result, i < 5 ? LABIAL_WAITING : i < 35 ? LABIAL_OK : LABIAL_DONE);
-        if (result == LABIAL_OK) {
-            const unsigned left = 30u - shown;
-            labial_rig_apply_ahead(&rig, frames[shown], (uint16_t)(left < 6u ? left : 6u), &values[1], &changes[1]);
-            shown++;
-        }
-        assert_int_equal(values[0], values[1]);
-        assert_int_equal(changes[0], changes[1]);
-    }
-    assert_int_equal(shown, 30);
-    delay.held = 999; /* by a fault */
-    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_OK);
-    assert_int_equal(delay.held, 5);
-    assert_int_equal(labial_rig_delayed(NULL, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_rig_delayed(&rig, NULL, frames[0], values, changes), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], NULL, changes), LABIAL_ERROR_NULL);
-    delay.frames = NULL;
-    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
-}
-
 /* A table that was not checked: more acceleration than there is counts as the most, so that nothing overflows. */
 TEST(acceleration_beyond_its_limit_is_the_limit)
 {
@@ -745,8 +708,6 @@ TEST(null_and_empty_are_refused)
     const labial_rig_output_t output = plain();
     const labial_rig_t rig = { &output, 1 }, empty = { &output, 0 }, hollow = { NULL, 1 };
     const int16_t faps[LABIAL_CHANNELS] = { 0 };
-    int16_t kept[LABIAL_CHANNELS];
-    labial_rig_delay_t delay = { kept, 0, 0 };
     int32_t value = 5;
     assert_int_equal(labial_rig_check(NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_check(&hollow), LABIAL_ERROR_NULL);
@@ -764,7 +725,6 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply_ahead(&hollow, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&rig, NULL, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, NULL, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_rig_delayed(&hollow, &delay, faps, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(value, 5);
     assert_int_equal(sizeof output, sizeof(void *) == 4 ? 68 : 80);
     assert_int_equal(sizeof(labial_rig_curve_t), 100);

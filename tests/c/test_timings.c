@@ -148,6 +148,9 @@ TEST(calls_do_as_the_header_says)
     assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
     assert_int_equal(labial_timings_next(&timings, ";", 1, &used, &timing), LABIAL_WAITING); /* a comment of .pho */
     assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
+    wrong |=
+        labial_timings_init(&timings, (labial_timings_format_t)(LABIAL_TIMINGS_TEXTGRID + 1)) != LABIAL_ERROR_RANGE;
+    wrong |= labial_timings_format(&timings) != LABIAL_TIMINGS_AUTO;
     wrong |= labial_timings_next(NULL, "", 0, &used, &timing) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_next(&timings, NULL, 0, &used, &timing) != LABIAL_ERROR_NULL;
     wrong |= labial_timings_next(&timings, "", 0, NULL, &timing) != LABIAL_ERROR_NULL;

@@ -71,6 +71,10 @@ PHRASES = [*"""
     """.split(),
            *"1-80-A 1-80-a 12-80-A 12-A 1-A XX XXX XXI XIX VX IIII X5 Ja Janu Satu Septem Mar,5 Mar/5 Mar-5".split(),
            *"Mar!5 www.Mar-x 5s 12s 12345s 120s 747s 747sx 101st a5s a5sx x747 no.x NO.5 CA.5 www.a.no.5 Gen.x".split(),
+           *"aaab soooo's xiii iiii vooov ooo oooo oOo sOOo SOOo ooo5 hooo'o loooL lOOOl goo aaa'a gooo9 eeel".split(),
+           *"w-w w-W W-w-what xw-w d-day d-days d-day's t-tests1 a-a- a-á e-e5 b-boy- n-no-no i-ii".split(),
+           *"A's Xs &Xs aXs aX's &X ;dr &dr 5dL 5fl 1fl a.m.-x 5a.m.-6 5p.m.-x 5a.m-6 a.m.-6 5a.m.:x 5a.b.-6".split(),
+           *"5a.m.s.-6 3:00p.m.-$5 1p.m.-2".split(),
            *"gen.x GEN.x 5m³ x³ 1⁄2 ½x a½ 5½ 5⅐ ⅒ `a` a`b 5% 5%-x 5%-6 80s-90s 80s-x A/A 5₂".split(),
            "2 1/3", "2 1/4", "1/4", "Mar -5", "Mar 5", "Mar x", "5 Mar", "5 Mar.", "Mar. 5", "Sat. 5", "Sat.",
            "Sat May", "Sun, May", "Mon-May", "Friday-Sat", "Fri, Sun.", "Mon Dr", "no. x", "no. 5", "ca. 5", "Fig. 5m",
@@ -106,7 +110,8 @@ PHRASES = [*"""
            "Elm 5 St", "Elm St. The", "Elm St., Foo", "Elm St Dr Foo", "Elm St. $5", "Elm $5 St", "Elm St. a Foo",
            "Elm. Dr x", "iPhone St.", "Ave St. x Dr", "tv html mp3 css dvds abc tv's x.php",
            "hm grrr shhh xxx bzz ll'd", "Tv Html nfl's usb's id ids", "xbox y'all x's Latte openai's", "abcdef ghjklm"]
-LONG = ["111111111" * 30, "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
+LONG = ["111111111" * 30, "a" * 40 + "b", "ab" * 15 + "o" * 40 + "kk", "ab" * 150,
+        "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()
 

@@ -6,6 +6,7 @@
 #include "suite.h"
 
 #include "labial/labial.h"
+#include "labial/visemes.h"
 #include "speech_en.h"
 
 static labial_t stream;
@@ -30,6 +31,7 @@ void labial_unlock(const labial_t *locked)
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
+    uint8_t shares[LABIAL_VISEMES];
     (void)user;
     (void)frame;
     (void)faps;
@@ -37,6 +39,7 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
     assert_int_equal(depth, 0);
     if (labial_room(&stream) > 0 && frames < 40) /* as from anywhere else */
         assert_int_equal(labial_push(&stream, frames % speech_en.phoneme_count, 20), LABIAL_OK);
+    assert_int_equal(labial_visemes(&stream, &speech_en, labial_arpabet_visemes, shares), LABIAL_OK);
     assert_int_equal(depth, 0);
 }
 
@@ -57,6 +60,7 @@ static void begin(void)
 
 TEST(each_call_takes_the_lock_once)
 {
+    uint8_t shares[LABIAL_VISEMES];
     begin();
     assert_int_equal(labial_room(&stream), LABIAL_QUEUE);
     assert_taken(1);
@@ -69,6 +73,12 @@ TEST(each_call_takes_the_lock_once)
     assert_int_equal(labial_articulation(&stream, 130), LABIAL_OK);
     assert_taken(1);
     assert_int_equal(labial_latency(&stream).frames, 5);
+    assert_taken(1);
+    assert_int_equal(labial_uses(&stream, &speech_en), 1);
+    assert_taken(1);
+    assert_int_equal(labial_exact(&stream, 0), LABIAL_OK);
+    assert_taken(1);
+    assert_int_equal(labial_visemes(&stream, &speech_en, labial_arpabet_visemes, shares), LABIAL_OK);
     assert_taken(1);
     assert_int_equal(labial_restart(&stream), LABIAL_ERROR_STATE);
     assert_taken(1);

@@ -180,6 +180,8 @@ test("a source of another output is refused where it is set, and the one before 
     for (const [name, source] of Object.entries(others)) {
         assert.equal(typeof source.output, "string");
         assert.throws(() => { face[name] = source; }, { name: "TypeError", message: /output "faps"/ }, name);
+        const early = Promise.resolve(source);
+        assert.throws(() => { face[name] = early; }, { name: "TypeError", message: /\[object Promise\].* no / }, name);
     }
     play(face, 0.4);
     assert.ok(face.track === track && wide(face) > 50);

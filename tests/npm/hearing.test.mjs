@@ -243,7 +243,9 @@ test("frames that nobody takes do not fill the memory", async () => {
 });
 
 test("misuse is told", async () => {
-    await assert.rejects((await Labial.load()).hear(), { name: "LabialError", message: /labial-hearing/ });
+    for (const hearing of [undefined, { words() {} }]) {
+        await assert.rejects((await Labial.load({ hearing })).hear(), { name: "LabialError", message: /labial-hearing/ });
+    }
     const lazy = await Labial.load({ hearing: Promise.resolve({ default: await hearing() }) });
     assert.ok(await lazy.hear(null, { sampleRate: RATE }));
     await assert.rejects(labial.hear(), { name: "LabialError", message: /^undefined samples per second.*not supported/ });

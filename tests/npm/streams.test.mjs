@@ -3,7 +3,6 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import test from "node:test";
-import { constants, deflateRawSync } from "node:zlib";
 import { Labial, LabialError, binary, folder, laughter, source, timings, unpack } from "./setup.mjs";
 
 const mouth = await Labial.load({ laughter });
@@ -413,19 +412,16 @@ test("a failed load of the laughter model can be tried again", async () => {
     assert.equal((await quiet.laughter()).fps, 50);
 });
 
-test("what unpacks the models undoes every kind of deflate's blocks, and names damage", () => {
-    const texts = ["", "a", "abc".repeat(9000), source("DESIGN.md"), Buffer.from(Array.from({ length: 70000 }, (_, i) => (i * i) >> 5))];
-    for (const bytes of texts.map((text) => Buffer.from(text))) {
-        for (const options of [{ level: 9 }, { level: 0 }, { strategy: constants.Z_FIXED }, { strategy: constants.Z_HUFFMAN_ONLY }]) {
-            const text = deflateRawSync(bytes, options).toString("base64");
-            assert.ok(Buffer.from(unpack(text)).equals(bytes));
-            if (text.length > 8) assert.throws(() => unpack(text.slice(0, text.length / 2)), LabialError);
-        }
+test("what unpacks the models names damage", () => {
+    assert.equal(Buffer.from(unpack(laughter)).toString("latin1", 0, 4), "LBM1");
+    for (const text of ["", laughter.slice(0, 40), laughter.slice(0, laughter.length / 2), laughter.slice(1), "eJxLBAAAYgBi"]) {
+        assert.throws(() => unpack(text), { name: "LabialError", message: /damaged/ });
     }
     for (let seed = 1, i = 0; i < 300; i++) {
-        const noise = Array.from({ length: 40 }, () => (seed = (seed * 48271) % 2147483647) & 255);
+        const noise = Buffer.from(laughter, "base64");
+        for (let k = 0; k < 4; k++) noise[24 + ((seed = (seed * 48271) % 2147483647) % (noise.length - 24))] ^= 1 << (seed & 7);
         try {
-            unpack(Buffer.from(noise).toString("base64"));
+            unpack(noise.toString("base64"));
         } catch (error) {
             assert.ok(error instanceof LabialError, error.stack);
         }

@@ -61,7 +61,8 @@ test("an answer of few messages that told no timings is named at its end, once",
     }
 });
 
-test("behind the end of an element's sound the lips come to rest", async () => {
+test("behind the end of an element's sound the lips come to rest", async (context) => {
+    context.mock.method(Date, "now", () => 0); // the computer's clock may be set back
     const element = { currentTime: 0.5, ended: false, paused: false, readyState: 4, play: async () => {} };
     const voice = await labial.voice({ clock: element });
     voice.say("spa", 0.2, 0.6);
@@ -173,10 +174,11 @@ test("an AudioContext counts from begin(), less what its device needs", async ()
     assert.ok(Math.abs(early.time - (7 - 0.01 - 0.02)) < 1e-9, "begin() without a time is now, and no frame was shown");
 });
 
-test("MediaStreams without a context share one, which asks to run", async (context) => {
-    let [made, asked] = [0, 0];
+test("MediaStreams without a context share one, which asks to run, until the page closes it", async (context) => {
+    let [made, asked, last] = [0, 0, null];
     globalThis.AudioContext = class {
         currentTime = ++made;
+        constructor() { last = this; }
         resume() { asked++; }
     };
     context.after(() => { delete globalThis.AudioContext; });
@@ -186,6 +188,8 @@ test("MediaStreams without a context share one, which asks to run", async (conte
         voice.close();
     }
     assert.deepEqual([made, asked], [1, 5]);
+    last.state = "closed";
+    assert.equal((await labial.voice({ clock: { getAudioTracks: () => [] } })).now, 2);
 });
 
 test("a media element counts while it plays", async () => {
@@ -212,7 +216,8 @@ test("a sound that goes on late delays the lips", async () => {
     for (const wrong of [-1, NaN, "1"]) assert.throws(() => voice.delay(wrong), TypeError);
 });
 
-test("a cancelled voice eases although its sound has stopped, and an element may get another sound", async () => {
+test("a cancelled voice eases although its sound has stopped; an element may get another sound", async (context) => {
+    context.mock.method(Date, "now", () => 0);
     const element = { currentTime: 0.3, paused: false, readyState: 4, play: async () => {} };
     const voice = await told({ clock: element });
     assert.ok([...voice.at()].some(Boolean));
@@ -263,20 +268,21 @@ test("a mouth closes although the clock stands, also if the next answer has begu
 });
 
 test("a mouth closes at the end although the clock stops with the sound, and the voice has ended", async (context) => {
-    context.mock.timers.enable({ apis: ["Date"], now: 1e6 });
+    let now = 1e6;
+    context.mock.method(performance, "now", () => now);
     for (const call of ["at", "played"]) {
         let ended = 0;
         const voice = await told({});
         voice.addEventListener("ended", () => ended++);
         voice.finish();
         for (let time = 0; time < 0.81; time += 0.02) voice[call](time);
-        context.mock.timers.tick(5000);
+        now += 5000;
         assert.deepEqual([voice.played(0.8), voice.done], [[], false], "it waits for sound");
         for (let time = 0.82; time < 1.25; time += 0.02) voice[call](time);
         const stands = rows([voice.at(1.24)])[0];
         const poses = [];
         for (let i = 0; i < 60; i++) {
-            context.mock.timers.tick(10);
+            now += 10;
             if (call === "at") poses.push(rows([voice.at(1.24)])[0]);
             else poses.push(...rows(voice.played(1.24)));
             assert.deepEqual([voice.done, ended], i < 37 ? [false, 0] : [true, 1]);

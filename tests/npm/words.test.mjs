@@ -214,7 +214,9 @@ test("streams that nobody holds are given back", async () => {
 test("words are loaded once, and asked for in a sentence", async () => {
     assert.equal(await labial.words(), words);
     const missing = { name: "LabialError", message: /^words are not loaded: Labial\.load\(.*labial-words/ };
-    for (const given of [undefined, () => null]) await assert.rejects((await Labial.load({ words: given })).words(), missing);
+    for (const given of [undefined, () => null, { hear() {} }]) {
+        await assert.rejects((await Labial.load({ words: given })).words(), missing);
+    }
     const other = await Labial.load({ words: Promise.resolve({ default: { default: await load() } }) });
     assert.notEqual(await other.words(), words);
     assert.deepEqual((await other.words()).wordTimings(SAID), words.wordTimings(SAID));

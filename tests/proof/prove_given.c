@@ -134,7 +134,6 @@ static uint8_t sounds[FRAMES * LABIAL_VISEMES];
 int prove_rig(void)
 {
     labial_rig_t rig;
-    labial_rig_delay_t delay;
     labial_sight_t sight;
     int16_t faps[LABIAL_CHANNELS];
     uint8_t shares[LABIAL_VISEMES];
@@ -166,11 +165,6 @@ int prove_rig(void)
     FILL(sight.wanted);
     sight.count = 1u + any_unsigned % LABIAL_RIG_SIGHT;
     labial_rig_step(&outputs[any_unsigned % OUTPUTS], &sight, any_uint32, any_int32, any_int32);
-    delay.frames = OR_NULL(int16_t *, frames);
-    delay.ahead = (uint16_t)(any_uint16 & 0x7fffu); /* all that `frames` have room for */
-    delay.held = any_uint16;
-    labial_rig_delayed(OR_NULL(const labial_rig_t *, &rig), OR_NULL(labial_rig_delay_t *, &delay),
-                       OR_NULL(const int16_t *, faps), OR_NULL(int32_t *, values), OR_NULL(int32_t *, changes));
     return 0;
 }
 

@@ -67,7 +67,7 @@ def same_but_version(one: Path, other: Path) -> bool:
 
 PROGRAM = """\
 #include <stdio.h>
-#include "labial/rig.h"
+#include "labial/face.h"
 #include "talk.h"
 #include "talk_phonemes.h"
 
@@ -76,34 +76,29 @@ static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 static labial_player_t player;
 static const labial_rig_output_t output = LABIAL_RIG_SERVO(1400, 1900, 60);
 static const labial_rig_t jaw = { &output, 1 };
-static int16_t ahead[LABIAL_CHANNELS * 13];
-static labial_rig_delay_t delay = { ahead, 12, 0 };
-static int32_t pulse, change;
-static unsigned shown;
-
-static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
-{
-    (void)user;
-    (void)frame;
-    if (labial_rig_delayed(&jaw, &delay, faps, &pulse, &change) == LABIAL_OK) {
-        const uint8_t *baked = talk_next(&player);
-        printf("%u %d %d\\n", shown++, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
-    }
-}
+static labial_face_t face;
+static int32_t room[LABIAL_FACE_SIZE(1, 12) / 4];
 
 int main(void)
 {
+    int32_t pulse;
     uint32_t next = 0;
-    int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, on_frame, NULL);
+    unsigned shown = 0;
+    int result = labial_init(&stream, &speech_en, workspace, sizeof workspace, labial_face_frame, &face), moves;
+    if (labial_face_init(&face, &jaw, 50, 12, room, sizeof room) != LABIAL_OK)
+        return 1;
     talk_init(&player);
-    labial_rig_rest(&jaw, &pulse);
-    while (result >= 0 && result != LABIAL_DONE) {
-        result = talk_phonemes_feed(&stream, &next);
+    do {
+        if (result >= 0 && result != LABIAL_DONE)
+            result = talk_phonemes_feed(&stream, &next);
         if (result == LABIAL_OK)
             result = labial_tick(&stream);
-    }
-    while (delay.held > 0)
-        on_frame(NULL, 0, NULL);
+        moves = labial_face_tick(&face, &pulse);
+        if (moves == LABIAL_OK) {
+            const uint8_t *baked = talk_next(&player);
+            printf("%u %d %d\\n", shown++, (int)pulse, baked ? (int)talk_jaw(baked) : -1);
+        }
+    } while (result >= 0 && (result != LABIAL_DONE || moves != LABIAL_DONE));
     printf("end %d %d\\n", result, talk_next(&player) != NULL);
     return 0;
 }
@@ -230,7 +225,19 @@ def test_limits_and_directions(tmp_path: Path) -> None:
     assert main(["bake", str(frames), "--rig", str(tmp_path / "face.toml"), "-o", str(tmp_path / "f.h")]) == 0
     assert data(tmp_path / "f.h") == [255, 0, 0, 0, 128, 0]
     text = (tmp_path / "f.h").read_text()
-    assert "#define F_JAW_AT_0 1300\n#define F_JAW_AT_255 1900" in text and "F_BROW = 1" in text
+    assert "#define F_JAW_AT_0 1300\n" in text and "#define F_JAW_AT_255 1900\n" in text and "F_BROW = 1" in text
+
+
+@pytest.mark.parametrize("option, pulses", [("AT_255=1700", "1400 1700"), ("AT_0=1500", "1500 1900")])
+def test_either_pulse_can_be_set_alone(tmp_path: Path, option: str, pulses: str) -> None:
+    """A header that overrides the one drives the servo beyond its limit."""
+    (tmp_path / "main.c").write_text(
+        '#include <stdio.h>\n#include "talk.h"\nint main(void)\n{\n'
+        '    const uint8_t ends[] = { 0, 255 };\n'
+        '    printf("%d %d", (int)talk_jaw(ends), (int)talk_jaw(ends + 1));\n    return 0;\n}\n')
+    run(CC, "-std=c99", *warnings("c"), f"-I{TALK}", f"-I{PLAYER.parent}", f"-DTALK_JAW_{option}",
+        tmp_path / "main.c", "-o", tmp_path / "main")
+    assert run(tmp_path / "main") == pulses
 
 
 def test_bytes_mean_what_the_formula_says(tmp_path: Path) -> None:

@@ -3,18 +3,15 @@ loudspeaker, which a recorder of the test's own takes down."""
 
 from __future__ import annotations
 
-import functools
 import shutil
 import subprocess
-import threading
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any, Dict, Iterator
 
 import numpy as np
 import pytest
 
-from browser import CHROMIUM, REASON, Browser, Page
+from browser import CHROMIUM, REASON, Browser, Page, served
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
@@ -110,11 +107,6 @@ window.ready = true;
 """
 
 
-class _Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: Any) -> None:
-        pass
-
-
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page, the voice and the packages."""
@@ -137,14 +129,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
 @pytest.fixture
 def page(folder: Path, browser: Browser) -> Iterator[Page]:
     """The page, ready to hear."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(_Quiet, directory=str(folder)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    page = browser.page(f"http://127.0.0.1:{server.server_port}/index.html")
-    page.wait_for("window.ready")
-    yield page
-    assert page.errors() == []
-    server.shutdown()
-    server.server_close()
+    with served(folder) as address:
+        page = browser.page(f"{address}/index.html")
+        page.wait_for("window.ready")
+        yield page
+        assert page.errors() == []
 
 
 def opening(faps: np.ndarray) -> np.ndarray:
@@ -286,6 +275,21 @@ def test_a_bundle_without_the_processors_file_has_its_text(page: Page) -> None:
     page.wait_for("Math.abs(face.faps[4]) > 100")
     page.evaluate("hearing.close(), heard.over = true, 0")
     assert page.evaluate("added") == ["http", "blob", "blob"]  # the last one is the recorder's
+
+
+def test_a_context_that_the_page_closed_is_not_taken_again(page: Page) -> None:
+    """Catches all later hearings failing, and a stream that nobody says is lost since it was so from the beginning."""
+    page.evaluate("""(async () => {
+        const { stream } = new AudioContext().createMediaStreamDestination();
+        const first = await labial.hear(stream);
+        await first.context.close();
+        window.refused = await labial.hear(stream, { context: first.context }).catch(({ message }) => message);
+        stream.getTracks()[0].stop();
+        const second = await labial.hear(stream);
+        second.addEventListener("lost", () => { window.lost = second.context !== first.context; });
+    })()""")
+    assert page.evaluate("refused") == "the AudioContext of the source was closed"
+    page.wait_for("window.lost")
 
 
 def test_what_cannot_be_heard_is_told(page: Page) -> None:

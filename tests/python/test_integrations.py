@@ -64,6 +64,18 @@ def babble(seconds: float) -> bytes:
     return array("h", (syllable() * (count // len(syllable()) + 1))[:count]).tobytes()
 
 
+def test_a_word_that_makes_no_sense_does_not_stop_the_sound(caplog: pytest.LogCaptureFixture) -> None:
+    """As of a service whose words end before they begin: it is left out, and the others are said."""
+    with Lips() as lips, labial.Voice() as voice:
+        lips.begin_sound(0.0)
+        for start, end in ((0.1, 0.4), (0.5, 0.3), (-1.0, 0.2), (math.nan, None), (0.6, 0.9)):
+            lips.say("maybe", start, end)
+        voice.say("maybe", 0.1, 0.4)
+        voice.say("maybe", 0.6, 0.9)
+        assert shown(lips, 0, 1) == shown(voice, 0, 1)
+    assert [message.split(":")[0] for message in caplog.messages] == ["a word is left out"] * 3
+
+
 def speaking(seconds: float) -> Lips:
     """Lips of a voice whose sound begins at once."""
     lips = Lips()

@@ -5,7 +5,9 @@ Its readers of JSON are held to those of labial.corpus: the same segments, to th
 
 from __future__ import annotations
 
+import base64
 import json
+import lzma
 import os
 import random
 import shutil
@@ -358,3 +360,31 @@ def test_frames_are_the_exporters(tmp_path: Path) -> None:
         assert [row["start"] for row in segments] == pytest.approx([start for _, start, _ in rows])
         assert [row["end"] for row in segments] == pytest.approx([end for _, _, end in rows])
         assert latency == pytest.approx(0.28 if model == "ahead" else 0.12, abs=0.002)
+
+
+#: Bytes of the numbers of `given`, which were packed.
+UNPACK = """
+const { unpack } = await import(url.replace(/index\\.js$/, "unpack.js"));
+answer(given.map((text) => Buffer.from(unpack(text)).toString("base64")));
+"""
+
+
+def test_what_is_packed_is_an_xz_file(tmp_path: Path) -> None:
+    rng = random.Random(7)
+    noise = rng.randbytes(150_000)
+    text = (SOURCE / "DESIGN.md").read_bytes()
+    numbers = bytes((i * i >> 5) & 255 for i in range(70_000))
+    given = [b"a", b"abc" * 9000, bytes(300_000), text, numbers, noise, noise + text + noise + text + numbers,
+             *(bytes(rng.choices(b"abcd\0", k=rng.randrange(1, 3000))) for _ in range(40))]
+    packed = [base64.b64encode(lzma.compress(data, preset=9)).decode() for data in given]
+    assert [base64.b64decode(text) for text in answered(UNPACK, packed, tmp_path)] == given
+
+
+@pytest.mark.parametrize("script", ["npm/speech.js", "npm-laughter/index.js", "npm-hearing/small.js",
+                                    "npm-hearing-host/ahead.js", "npm-words/english.js"])
+def test_the_packages_are_what_xz_unpacks(tmp_path: Path, script: str) -> None:
+    if MISSING:
+        pytest.skip(MISSING)
+    path = package(tmp_path).parent / script
+    data = lzma.decompress(base64.b64decode(path.read_text().split('"')[-2]))
+    assert data[:4] in (b"\0asm", b"LBM1")

@@ -236,7 +236,6 @@ def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
@@ -269,6 +268,17 @@ def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
         assert [line for line in lines[3:] if not line.startswith("servo ")] == said
         wide = np.array([int(line.split()[2]) > 100 for line in lines[3:] if line.startswith("servo ")])
         assert least <= np.count_nonzero(wide[1:] > wide[:-1]) <= most and not wide[-50:].any()
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not CXX, reason="no C++ compiler")
+def test_jaw_sketch_stops_at_a_word(lines_of: Lines) -> None:
+    """In the midst of a vowel, with more behind it: the mouth closes at once, and the next line opens it again."""
+    text = "AA 3000 M 100 AA 3000\n" + " " * 28800 + "stop\n" + " " * 17280 + "AA 200\n"  # after 2.5 s, and 1.5 s later
+    lines = lines_of("JawServo", 6000, 0, 64, text=text)
+    angles = np.array([int(line.split()[2]) for line in lines[2:]])  # every 20 ms
+    assert angles[60:125].min() > 100 and angles[145:200].max() == 80 and angles[200:240].max() > 95
+    assert angles[-20:].max() == 80
 
 
 @pytest.mark.slow

@@ -429,6 +429,7 @@ def test_other_pronouncers_are_asked_once(options: Dict[str, Any], monkeypatch: 
     monkeypatch.setitem(sys.modules, "num2words", None if "language" in options else sys)
     monkeypatch.setattr("labial.corpus.words._written_out", lambda digits, language: asked.append(digits) or "two")
     with labial.Voice(**options) as voice:
+        assert asked.pop() == "1" and not asked  # whether they can be asked at all
         for k in range(5):
             voice.say("ja" if k % 2 else "21", k / 2, k / 2 + 0.4)
         assert max(frame[0] for frame in played(voice, 0, 2)) > 100

@@ -194,8 +194,12 @@ def test_other_languages_are_espeaks() -> None:
     assert labial.phonemes("Mama", language="de", own={"Mama": "P AA"}) == ["P", "AA"]
     timings = labial.word_timings([("Guten", 0, 300), ("Tag!", 300, 600)], language="de")
     assert total(timings) == 600 and timings[0][0] == "G"
+    assert labial.phonemes("Mama", language="de_DE") == labial.phonemes("Mama", language="de")
+    assert labial.phonemes("Mother's", language="en_US") == labial.phonemes("Mother's", language="en")
     with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
         labial.phonemes("a", language="xx-none")
+    with pytest.raises(LabialError, match="espeak-ng cannot speak 'xx-none'"):
+        labial.Voice(language="xx-none")
 
 
 VOWELS = "AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split()
@@ -230,6 +234,17 @@ def test_words_keep_their_phonemes_at_the_punctuation_of_their_script() -> None:
 
 
 @needs_espeak
+def test_words_of_one_letter_are_not_named() -> None:
+    """Alone espeak-ng says "e agudo", "y grecque" and "ess" for them, which are among the most common words."""
+    for language, text, phonemes in (("pt-br", "é", "EH"), ("pt-br", "à", "AE"), ("fr", "y", "IY"), ("pl", "w", "F"),
+                                     ("cs", "s", "S"), ("ru", "в", "V"), ("el", "η", "IY"), ("it", "è", "EH")):
+        for form in (text, unicodedata.normalize("NFD", text)):
+            assert labial.phonemes(form, language=language) == [phonemes], (language, text)
+    assert labial.phonemes("O dia é", language="pt-br")[::4] == ["UH", "EH"]
+    assert labial.phonemes("q", language="de") == ["K", "UW"]
+
+
+@needs_espeak
 def test_affricates_of_india() -> None:
     """Which espeak-ng writes as palatal stops; those of Hungarian and Turkish are such stops."""
     for language, text in (("hi", "चाँद जान छत झंडा"), ("mr", "चाँद छत झंडा"), ("ne", "चाँद जान छत झंडा"),
@@ -251,7 +266,8 @@ def test_signs_are_said_in_the_language(caplog: pytest.LogCaptureFixture) -> Non
             ("fr", "-5", "moins 5"), ("es", "5 €", "5 euro"), ("es", "20%", "20 porciento"),
             ("ru", "500 ₽", "500 рублей"), ("hi", "₹500", "500 रुपये"), ("hi", "500 ₹", "500 रुपये"),
             ("cmn", "20%", "百分之二十"), ("cmn", "$5", "五美元"), ("cmn", "20℃", "二十摄氏度"),
-            ("ja", "¥500", "500 えん"), ("ko", "5 €", "5 유로")):
+            ("ja", "¥500", "500 えん"), ("ko", "5 €", "5 유로"),
+            ("ko", "5€입니다", "5 유로 입니다"), ("ko", "25°C입니다", "25 도 입니다"), ("ja", "25℃です", "25 ど です")):
         assert labial.phonemes(text, language=language) == labial.phonemes(same, language=language), (language, text)
     assert labial.phonemes("20%", language="hi")[-7:] == "P AH T IH SH AH T".split()
     assert labial.phonemes("5 $", language="de") == "F UW N F D AO L AA".split()
@@ -276,6 +292,14 @@ def test_the_n_of_japanese() -> None:
 
 
 @needs_espeak
+def test_particles_and_letters_of_japanese() -> None:
+    """は behind a word is "wa"; kana behind Latin letters are kana, where espeak-ng says "Japanese letter"."""
+    for text, phonemes in (("こんにちは", "K OW N N IY CH IY W AE"), ("これは", "K OW L EH W AE"),
+                           ("はは", "HH AE HH AE"), ("OKです", "OW K EY D EH S"), ("Tシャツ", "T IY SH AE S UH")):
+        assert labial.phonemes(text, language="ja") == phonemes.split(), text
+
+
+@needs_espeak
 def test_numbers_of_chinese() -> None:
     """As numbers; years, long ones and those that begin with 0 digit by digit. Tones of pinyin are not said."""
     for digits, spoken_so in {
@@ -283,7 +307,8 @@ def test_numbers_of_chinese() -> None:
             "1005": "一千零五", "1984": "一九八四", "2024": "二零二四", "2100": "二千一百", "10000": "一万",
             "10050": "一万零五十", "105000": "十万五千",
             "1234567": "一百二十三万四千五百六十七", "100000001": "一亿零一",
-            "1000000000000": "一万亿", "007": "零零七", "3.14": "三点一四", "１２": "十二",
+            "1000000000000": "一万亿", "007": "零零七", "3,500": "三千五百",
+            "1,234,567": "一百二十三万四千五百六十七", "3.14": "三点一四", "１２": "十二",
             "12345678901234567": "一二三四五六七八九零一二三四五六七"}.items():  # fmt: skip
         assert labial.phonemes(digits, language="cmn") == labial.phonemes(spoken_so, language="cmn"), digits
     assert labial.phonemes("第3", language="cmn") == labial.phonemes("第三", language="cmn")
@@ -398,12 +423,13 @@ def test_numbers_are_written_out_with_their_signs(monkeypatch: pytest.MonkeyPatc
         def num2words(value: float, lang: str, to: str) -> str:
             if lang == "hi":
                 raise NotImplementedError
+            assert value in (-25, 25)
             return "minus zwei" if value < 0 else "zwei"
 
     monkeypatch.setitem(sys.modules, "num2words", Stub)
     monkeypatch.setattr(spoken, "_unwritten", set())
     for text, same in (("$25", "zwei $"), ("25 %", "zwei Prozent"), ("25%", "zwei Prozent"), ("-25", "minus zwei"),
-                       ("25", "zwei"), ("2,5 %", "2,5 Prozent")):
+                       ("25", "zwei"), ("2,5 %", "2,5 Prozent"), ("2.500", "2500"), ("2,500", "2 Komma 5 null null")):
         assert labial.phonemes(text, language="de", numbers=True) == labial.phonemes(same, language="de"), text
     with labial.Voice(language="hi", numbers=True) as voice:
         voice.say("25", 0.1, 0.6)

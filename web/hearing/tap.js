@@ -18,6 +18,7 @@ export function contextOf({ LabialError, shown }, source, given) {
     if (!isStream(source) && !isElement(source)) {
         throw new TypeError(`the source is ${shown(source)}, not a MediaStream, an audio element or an AudioNode`);
     }
+    if (shared?.state === "closed") shared = null; // by the page
     const known = elements.get(source)?.node.context ?? given ?? shared;
     if (known) return known;
     if (!globalThis.AudioContext) throw new LabialError("there is no AudioContext here: push() the samples instead");
@@ -26,6 +27,7 @@ export function contextOf({ LabialError, shown }, source, given) {
 
 /** Begins to take samples once it is started. */
 export async function tap({ LabialError }, context, source, play = !isNode(source)) {
+    if (context.state === "closed") throw new LabialError("the AudioContext of the source was closed");
     if (!context.audioWorklet) {
         throw new LabialError("this page has no AudioWorklet: browsers have it on https: and localhost alone");
     }
@@ -36,7 +38,7 @@ export async function tap({ LabialError }, context, source, play = !isNode(sourc
         prepared.set(context, loading);
     }
     await loading;
-    if (context.state === "suspended") Promise.resolve(context.resume()).catch(() => {}); // waits for a click
+    if (context.state !== "running") Promise.resolve(context.resume()).catch(() => {}); // waits for a click
     const factor = context.sampleRate <= 48000 ? 1 : context.sampleRate <= 96000 ? 2 : 4;
     return new Tap(context, nodeOf(LabialError, context, source), { source, factor, play });
 }
@@ -134,11 +136,9 @@ class Tap {
         const tracks = isStream(this.#source) ? this.#source.getAudioTracks() : [];
         const later = (what) => setTimeout(() => signal.aborted || tell(what), 1000 * delay);
         if (!tracks.length) this.#source.addEventListener("ended", () => later("ended"), { signal });
-        for (const track of tracks) {
-            track.addEventListener("ended", () => {
-                if (tracks.every(({ readyState }) => readyState === "ended")) later("lost");
-            }, { signal });
-        }
+        const check = () => tracks.length && tracks.every(({ readyState }) => readyState === "ended") && later("lost");
+        for (const track of tracks) track.addEventListener("ended", check, { signal });
+        check();
         const { context } = this;
         this.#later = new DelayNode(context, { delayTime: delay, maxDelayTime: delay + 1 });
         this.sound = new GainNode(context);

@@ -180,7 +180,7 @@ export class Voice extends EventTarget {
         this.#open();
         const length = Math.min(this.#tools.amount(milliseconds, "milliseconds"), CANCEL_MAX);
         this.#lexicon.wasm.voice_cancel(this.#at, Math.ceil(length - 1e-6));
-        [this.#since, this.#eased] = [Date.now(), 0];
+        [this.#since, this.#eased] = [this.#tools.elapsed(), 0];
     }
 
     // ---- What is shown
@@ -286,7 +286,6 @@ export class Voice extends EventTarget {
         if (!clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
         return clock.read();
     }
-
 
     /** A frame in the voice's output. */
     #form(faps) {
@@ -404,7 +403,7 @@ export class Voice extends EventTarget {
             throw new TypeError(`the time is ${this.#tools.shown(seconds)}, not a number of seconds or null`);
         }
         const poses = seconds === null || this.#origin === null ? [] : this.#due(seconds - this.#origin, take);
-        const now = Date.now();
+        const now = this.#tools.elapsed();
         const stands = seconds === null || seconds <= this.#heard;
         if (!stands && !this.cancelled) [this.#since, this.#eased] = [now, 0];
         const due = Math.floor((now - this.#since) / 1000 * this.fps);
@@ -454,16 +453,20 @@ let shared;
 
 /** What reads a clock: `read` returns seconds, or null while nothing is heard. `anchored` where the clock runs before
  * the voice does, so that begin() must say when it begins. */
-function clockOf({ shown }, clock, context) {
+function clockOf({ shown, heard }, clock, context) {
     if (clock == null) return null;
     if (typeof clock === "function") return { read: () => clock() ?? null, anchored: false };
     if (typeof clock === "object") {
-        if ("destination" in clock && "currentTime" in clock) return { read: () => heard(clock), anchored: true };
-        if ("play" in clock && "currentTime" in clock) return { read: reader(clock), anchored: false };
+        if ("destination" in clock && "currentTime" in clock) return { read: () => output(clock), anchored: true };
+        if ("play" in clock && "currentTime" in clock) {
+            const silent = () => clock.currentTime === 0 && (clock.paused || clock.readyState < 3);
+            return { read: () => (silent() ? null : heard(clock)), anchored: false };
+        }
         if ("getAudioTracks" in clock) {
+            if (shared?.state === "closed") shared = null; // by the page
             const own = context ?? (shared ??= new AudioContext());
             if (own === shared) Promise.resolve(own.resume()).catch(() => {}); // waits for a click
-            return { read: () => heard(own), anchored: true };
+            return { read: () => output(own), anchored: true };
         }
     }
     const kinds = "an AudioContext, a media element, a MediaStream or a function";
@@ -471,18 +474,6 @@ function clockOf({ shown }, clock, context) {
 }
 
 /** The time of an AudioContext that is heard now: what is computed at `currentTime` is heard later. */
-function heard(context) {
+function output(context) {
     return context.currentTime - (context.outputLatency || context.baseLatency || 0);
-}
-
-/** What tells the time of an element that is heard now, for which the browser allows for the device. Behind the sound's
- * end time goes on, so that the lips come to rest. */
-function reader(element) {
-    let end = null; // when it had ended
-    return () => {
-        const { currentTime, ended, paused, readyState } = element;
-        end = ended ? end ?? Date.now() : null;
-        if (currentTime === 0 && (paused || readyState < 3)) return null;
-        return end === null ? currentTime : currentTime + (Date.now() - end) / 1000;
-    };
 }

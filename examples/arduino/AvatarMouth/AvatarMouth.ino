@@ -29,8 +29,8 @@ static void nextTick()
     talking = talk_phonemes_feed(&stream, &nextPhoneme) == LABIAL_OK && labial_tick(&stream) != LABIAL_DONE;
 }
 
-// Takes up as many frames as the first one waits for, which is then shown in the next period: start your sound at the end
-// of this.
+// Takes up as many frames as the first one waits for, which is then shown in the next period: start your sound at the
+// end of this.
 static void talk()
 {
     nextPhoneme = 0;

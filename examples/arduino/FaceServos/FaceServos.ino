@@ -1,11 +1,11 @@
 /*
- * FaceServos - a face of five servos on a PCA9685, moved by an ESP32 that computes every frame; a DFPlayer Mini plays the
- * recording. talk_phonemes.h holds what is said:
+ * FaceServos - a face of five servos on a PCA9685, moved by an ESP32 that computes every frame; a DFPlayer Mini plays
+ * the recording. talk_phonemes.h holds what is said:
  *
  *     labial bake talk.wav --text "..." --as phonemes -o talk_phonemes.h
  *
- * servos.h and servos.c say what moves how far; they come from servos.toml by `labial rig`, and so will yours. The jaw, the
- * upper lip, the lower lip and the corners are on the channels 0 to 4.
+ * servos.h and servos.c say what moves how far; they come from servos.toml by `labial rig`, and so will yours. The jaw,
+ * the upper lip, the lower lip and the corners are on the channels 0 to 4.
  *
  *     21, 22   SDA, SCL of the PCA9685
  *     17       (TX) through 1 kilohm to the DFPlayer's RX

@@ -3,7 +3,8 @@
  *
  *     HH 70 AH 60 L 80 OW 250
  *
- * with a line end; up to 255 phonemes wait, some 80 words, and of more it says that they are left out. Every name that labial_find() knows will do: ARPABET, flite's, IPA.
+ * with a line end; up to 255 phonemes wait, some 80 words, and of more it says that they are left out. Every name that
+ * labial_find() knows will do: ARPABET, flite's, IPA. The word `stop` drops what waits, and the mouth closes.
  *
  * A servo at pin 9. Boards of the ESP32 family use the library ESP32Servo: replace Servo.h by ESP32Servo.h.
  */
@@ -11,7 +12,8 @@
 #include <labial/face.h>
 #include <speech_en.h>
 
-// What your jaw needs: the servo's angles with the mouth closed and wide open, and how far it gets in 20 ms, in degrees.
+// What your jaw needs: the servo's angles with the mouth closed and wide open, and how far it gets in 20 ms, in
+// degrees.
 static const int closedAngle = 80;
 static const int openAngle = 110;
 static const int speed = 10;
@@ -31,8 +33,8 @@ static int32_t room[LABIAL_FACE_SIZE(1, ahead) / 4];
 static labial_t stream;
 static uint32_t workspace[SPEECH_EN_WORKSPACE_SIZE / 4];
 
-// Phonemes for which the stream has no room yet, each with its milliseconds above its number: the line sends them faster
-// than the jaw speaks them, and does not wait. One more place is for the end of the line.
+// Phonemes for which the stream has no room yet, each with its milliseconds above its number: the line sends them
+// faster than the jaw speaks them, and does not wait. One more place is for the end of the line.
 static const unsigned most = 255;
 static const uint32_t lineEnd = 255;
 static uint32_t waiting[most + 1];
@@ -49,7 +51,8 @@ static void keep(uint32_t item)
     waiting[(first + held++) % (most + 1)] = item;
 }
 
-// Ends the word: a number is the milliseconds of the phoneme before it, anything else a phoneme's name.
+// Ends the word: a number is the milliseconds of the phoneme before it, `stop` drops all, and anything else is a
+// phoneme's name.
 static void takeWord()
 {
     if (length == 0)
@@ -66,6 +69,11 @@ static void takeWord()
             Serial.println("too long: the rest of the line is left out");
             tooLong = true;
         }
+        phoneme = LABIAL_ERROR_NAME;
+    } else if (strcmp(word, "stop") == 0) {
+        labial_cancel(&stream, 200);
+        held = 0;
+        speaking = false;
         phoneme = LABIAL_ERROR_NAME;
     } else {
         phoneme = labial_find(&speech_en_names, word, length);
@@ -106,7 +114,8 @@ static void speak()
     }
 }
 
-// The first angle is that of rest. Libraries for some boards keep it from before attach(), those for others take it after.
+// The first angle is that of rest. Libraries for some boards keep it from before attach(), those for others take it
+// after.
 static void show(int32_t angle)
 {
     servo.write((int)angle);

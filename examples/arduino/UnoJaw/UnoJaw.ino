@@ -1,6 +1,6 @@
 /*
- * UnoJaw - a jaw that moves to a recording, on an Arduino Uno or Nano: a DFPlayer Mini plays the sound, talk.h holds the
- * jaw's motion, computed ahead by `labial bake`. docs/arduino.md leads here.
+ * UnoJaw - a jaw that moves to a recording, on an Arduino Uno or Nano: a DFPlayer Mini plays the sound, talk.h holds
+ * the jaw's motion, computed ahead by `labial bake`. docs/arduino.md leads here.
  *
  *     pin 9   servo's signal
  *     pin 1   (TX) through 1 kilohm to the DFPlayer's RX

@@ -172,9 +172,11 @@ static inline uint32_t {name}_milliseconds(unsigned part)
 def _limits(upper: str, output: TableOutput) -> str:
     name = f"{upper}_{output.name.upper()}"
     return f"""
-/* What the bytes 0 and 255 of {output.name} stand for. A program may define both before it includes this file. */
+/* What the bytes 0 and 255 of {output.name} stand for. A program may define them before it includes this file. */
 #ifndef {name}_AT_0
 #define {name}_AT_0 {output.minimum}
+#endif
+#ifndef {name}_AT_255
 #define {name}_AT_255 {output.maximum}
 #endif
 """

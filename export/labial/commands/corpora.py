@@ -26,10 +26,10 @@ def add_timings(command: argparse.ArgumentParser) -> None:
 
 def run_timings(options: argparse.Namespace) -> None:
     from labial.corpus.formats import as_lab
-    from labial.corpus.words import Pronunciation
+    from labial.corpus.words import pronunciation
 
     check(options.output, ".lab")
-    how = Pronunciation(language=options.language)
+    how = pronunciation(language=options.language)
     offset = options.offset_ms / 1000.0
     put(as_lab(options.phones, options.labels, options.source, how, offset, options.tier), options.output)
 

@@ -33,6 +33,8 @@ _ALIKE = 0.5
 
 #: What is a word in its sentence; signs are not, and espeak-ng makes several words of them.
 _WORD = re.compile(r"[^\s%‰&+=@°§№#$€£¥₹₽]*[^\W_][^\s%‰&+=@°§№#$€£¥₹₽]*")
+#: A word of one letter, with marks or without.
+_LETTER = re.compile(r"[^\W\d_][\u0300-\u036f]*")
 _VOICE = re.compile(r"[a-z][\w+-]*(?:/[\w+-]+)*")
 _CHINESE = re.compile(r"(?:zh|cmn|zho)(?:-.*)?")
 #: Chinese that is Cantonese: as services name it, and where it is what people speak.
@@ -133,8 +135,17 @@ def _say_unspeakable(word: str, language: str) -> None:
 
 
 def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
-    """The phonemes of words, as they sound in their sentence where that can be told."""
-    found = _spoken(words, language)
+    """The phonemes of words, as they sound in their sentence where that can be told.
+
+    espeak-ng names a single letter, as "e acute" for the Portuguese for "is", unless another word follows.
+    """
+    single = [word for word in words if _LETTER.fullmatch(word)]
+    found = _spoken([*words, *(f"{word} ta" for word in single)], language)
+    for word, phonemes in zip(single, found[len(words) :]):
+        if "T" in phonemes[1:]:
+            end = len(phonemes) - 1 - phonemes[::-1].index("T")
+            found[words.index(word)] = phonemes[:end]
+    del found[len(words) :]
     for first in range(0, len(words), _SENTENCE):
         places = [place for place in range(first, min(first + _SENTENCE, len(words))) if _WORD.fullmatch(words[place])]
         part = [words[place] for place in places]
@@ -239,6 +250,7 @@ def _with_vowels(phonemes: Sequence[str]) -> List[str]:
 
 #: Numbers as they are spoken; a digit behind a Latin letter is a tone of pinyin.
 _NUMBER = re.compile(r"(?<![A-Za-z\u00c0-\u024f\u0300-\u036f])\d+(?:\.\d+)?|\d{2,}")
+_THOUSANDS = re.compile(r"(?<=\d),(?=\d{3}(?!\d))")
 _DIGITS, _TENS, _MYRIADS = "零一二三四五六七八九", ("", "十", "百", "千"), ("", "万", "亿", "万亿")
 
 
@@ -260,7 +272,7 @@ def _spelt_out(found: re.Match[str]) -> str:
 def _by_pinyin(word: str) -> Optional[List[str]]:
     """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
     English."""
-    word = _NUMBER.sub(_spelt_out, word)
+    word = _NUMBER.sub(_spelt_out, _THOUSANDS.sub("", word))
     text = _pinyin(word) if HAN.search(word) else word
     found: List[str] = []
     for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
@@ -320,14 +332,18 @@ def _syllables(part: str) -> Optional[List[str]]:
 
 
 def _kana(word: str) -> str:
-    """A word in kana, by fugashi where it has kanji; without it kanji are left out."""
-    if not HAN.search(word):
-        return word
-    tagger = _tagger()
-    if tagger is None:
-        return HAN.sub("", word)
-    said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))
-    return "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
+    """A word in kana, by fugashi where it has kanji; without it kanji are left out. は that ends a word is read as わ,
+    and what is not kana stands apart, since espeak-ng would name the letters of "OKです"."""
+    tagger = _tagger() if HAN.search(word) else None
+    if tagger:
+        said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))
+        word = "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
+    return _JOINT.sub(" ", _TOPIC.sub("わ", HAN.sub("", word)))
+
+
+#: Where letters of the Latin alphabet and kana meet; and the particle of a topic, which is not the end of "haha".
+_JOINT = re.compile("(?<=[A-Za-z])(?=[\u3041-\u30ff])|(?<=[\u3041-\u30ff])(?=[A-Za-z])")
+_TOPIC = re.compile("(?<![はあ])は$")
 
 
 @cache

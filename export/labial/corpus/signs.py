@@ -10,11 +10,12 @@ _CURRENCIES = "$€£¥₹₽"
 #: Signs as they are written in a common way: those as wide as ideographs, and those of two characters in one.
 _WRITTEN = str.maketrans({**{chr(code + 0xFEE0): chr(code) for code in range(0x21, 0x7F)},
                           "￥": "¥", "￡": "£", "℃": "°C", "℉": "°F", "−": "-"})
-#: What is looked up: a number with the sign before it or its percent sign, since these may change places; degrees;
-#: any other sign alone. A hyphen is a minus before a number, at the beginning of a word.
+#: What is looked up: a number with the sign before it or its percent sign, since these may change places; degrees and
+#: sums with what is written behind them, as Korean has it; any other sign alone. A hyphen is a minus before a number,
+#: at the beginning of a word.
 _BEFORE = rf"(?:(?<![^\s(])[-−][{_CURRENCIES}]?|[{_CURRENCIES}＄￥￡#№§])"
-PATTERN = (rf"(?<![^\W_])(?:{_BEFORE}\d+(?:[.,]\d+)*[%％]?|\d+(?:[.,]\d+)*[%％])(?![^\W_])|°[^\W\d_](?![^\W_])|"
-           rf"[%‰&+=@°§№{_CURRENCIES}％＆＋＝＠＄￥￡℃℉]")
+PATTERN = (rf"(?<![^\W_])(?:{_BEFORE}\d+(?:[.,]\d+)*[%％]?|\d+(?:[.,]\d+)*[%％])(?![^\W_])|"
+           rf"[°€£¥₹₽￥￡℃℉][^\W\d_]*|[%‰&+=@§№$％＆＋＝＠＄]")
 #: A number with such signs.
 NUMBER = re.compile(rf"[-−]?[{_CURRENCIES}＄￥￡#№§]?\d[\d.,]*[%％]?")
 _CHINESE = "% 百分之 °C 摄氏度 ° 度 € 欧元 £ 英镑 $ 美元 ¥ 元 ₹ 卢比 ₽ 卢布 & 和 + 加 = 等于 № 号 # 号 - 负"

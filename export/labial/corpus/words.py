@@ -27,6 +27,7 @@ LATEST = (1 << 32) - 2
 _STRETCH = re.compile(r"[^\W_]+(?:['’\-.,][^\W_]+)*")
 _SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
 _NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
+_GROUPED = re.compile(r"-?\d{1,3}(?:[.,]\d{3})+")
 _TAGS = {"[": "]", "<": ">"}
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
@@ -59,7 +60,10 @@ class Pronunciation(NamedTuple):
 
 def pronunciation(own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = ENGLISH,
                   numbers: bool = False) -> Pronunciation:
-    """How words are pronounced, from arguments as callers have them: phonemes in one text, or a list."""
+    """How words are pronounced, from arguments as callers have them: phonemes in one text, or a list; a language also
+    as locales and services name it, "de_DE" and "en-US"."""
+    language = re.sub("^([a-z]{2,3})_(?=[A-Z])", r"\1-", language)
+    language = ENGLISH if language == "en-US" else language
     split = {word: sounds.split() if isinstance(sounds, str) else list(sounds) for word, sounds in (own or {}).items()}
     return Pronunciation(split, language, bool(numbers))
 
@@ -240,6 +244,8 @@ def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence
         text = item if how.language == ENGLISH else signs.worded(item, how.language)
         digits = re.search(r"-?\d[\d.,]*", text)
         if not digits or not signs.NUMBER.fullmatch(item) or not _NUMBER.fullmatch(digits[0]):
+            continue
+        if how.language != ENGLISH and _GROUPED.fullmatch(digits[0]):  # 3,500 or 3.500: espeak-ng knows which
             continue
         written = _written_out(digits[0], how.language)
         if written is not None:

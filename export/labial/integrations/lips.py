@@ -62,8 +62,13 @@ class Lips(Voice):
         self._sounds.append(_Sound(at))
 
     def say(self, text: str, start: float, end: Optional[float] = None) -> None:
-        """A word of the utterance, as :meth:`labial.Voice.say`: from now on the utterance moves by its words."""
-        super().say(text, start, end)
+        """A word of the utterance, as :meth:`labial.Voice.say`: from now on the utterance moves by its words. A word
+        whose times make no sense is logged and left out: an agent's sound must not stop for it."""
+        try:
+            super().say(text, start, end)
+        except LabialError as error:
+            _logger.warning("a word is left out: %s", error)
+            return
         if text.strip() and self._sounds:
             self._sounds[-1].has_words = True
 

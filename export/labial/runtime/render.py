@@ -74,10 +74,11 @@ def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], 
     list of characters, blanks included. Raises LabialError where the numbers of characters and times differ."""
     if not len(text) == len(starts) == len(ends):
         raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
+    how = pronunciation(own, language, numbers)
     found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends],
-                                language)
+                                how.language)
     expect_milliseconds(max((float(end) - float(start) for start, end in zip(starts, ends)), default=0.0))
-    return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
+    return timings_of(found, how, offset(offset_ms))
 
 
 def _time(value: Any) -> int:

@@ -338,7 +338,9 @@ class _Speaker:
     def __init__(self, how: Pronunciation) -> None:
         self.asks = how.language != ENGLISH or how.numbers
         self.apart = is_chinese(how.language)  # each character is a word
-        self.own = own_words([], how)  # an error in a word of the caller's own is raised now
+        self.own = own_words([], how)  # an error in a word of the caller's own, or in the language, is raised now
+        if self.asks:
+            known_words(["1"], how)
         self.callback = PRONOUNCE(self._ask)
         self._how, self._tail = how, ""
         self._spoken: Dict[str, Optional[Sequence[str]]] = {}  # what other programs said; None for nothing

@@ -14,7 +14,7 @@ EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DIVIDED, CUBE = (ch
 
 _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "³": CUBE, "×": TIMES,
           "−": MINUS, "÷": DIVIDED, "’": "'", "‘": "'", "ʼ": "'", "`": "'", "µ": "u", "μ": "u",
-          "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-",
+          "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-", "\u2044": "/",
           # Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer.
           **dict(zip("\u037e\u0589\u05be\u05c3\u060c\u061b\u061f\u06d4\u0964\u0965\u104a\u104b\u1362\u1363\u17d4\u17d5",
                      "?.-.,;?...,..,..")),

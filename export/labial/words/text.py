@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Dict, NamedTuple, Optional, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 from labial.words import characters as signs
 from labial.words import numbers
@@ -36,6 +36,7 @@ mysql my sequel;nginx engine ex;kubernetes cooper netties;latte lah tay;karate c
 bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control
 airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -
 uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
+wwi double_you double_you one;wwii double_you double_you two
 haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
 #: What they mean behind a name; the first two unless another one follows; and words that are no names, at a sentence's
@@ -59,14 +60,14 @@ _SCALES = "hundred thousand million billion trillion".split()
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
 nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
 ft foot|feet;yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_
-mL milliliter_;cl centiliter_;dl deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_
+mL milliliter_;cl centiliter_;dl deciliter_;dL deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_
 us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz
 MHz megahertz;GHz gigahertz
 kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ per second;Mbps megabit_ per second
 Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
 mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
 rpm are pee em;bpm bee pee em;fps eff pee ess;mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_
-yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square
+yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square;fl fluid
 M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
 #: Units behind which another number and its unit belong to the same length or duration, and what marks them.
@@ -107,6 +108,8 @@ _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours the
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
+_STUTTER = re.compile(r"([A-Za-z])-(?=[a-z])(?=(?i:\1))(?!(?:tests?|day|boy|shaped)(?![A-Za-z0-9\1]|'[A-Za-z]))")
+_DRAWN_OUT = re.compile(r"(?i)^(?=[^ivx].*[aeiouy]|[aeouy]).*([a-z])\1\1$")
 _ROMAN = re.compile("(X{0,2})(I{1,3}|IV|VI{0,3}|IX)")
 _ONES = "I II III IV V VI VII VIII IX".split()
 
@@ -269,6 +272,8 @@ class _Reader:
     # ---- Letters
 
     def _read_letters(self, place: int) -> int:
+        while _STUTTER.match(self.simple, place) and not signs.is_inside(self.said.at(place - 1)):
+            place += 2
         before, named = self.said.at(place - 1), self.context.named
         after, self.context.named = self._forget(), False
         pointed = _POINTED.match(self.simple, place)
@@ -278,14 +283,10 @@ class _Reader:
             end = self._read_unit(place, after, before == BLANK)
             if end:
                 return end
-        found = _RUN.match(self.simple, place)
-        assert found is not None
-        run = _CAMEL.split(found[0])[0][:LONGEST]
-        while run.endswith("'"):
-            run = run[:-1]
+        run, places = _run_at(self.simple, place)
         self.said.letters = True
-        end = place + len(run)
-        is_pointed = self._read_run(run, place, after, before, named)
+        end = places[-1]
+        is_pointed = self._read_run(run, places, after, before, named)
         if self.context.after == "with":
             return end + 1
         if run.lower() in ("am", "pm") and after in ("one", "number", "time"):
@@ -297,10 +298,14 @@ class _Reader:
         if meaning:
             self.said.say(meaning, place)
             return place + 3
-        if text.lower() in ("a.m", "p.m") and after == "time":
+        is_hour = text.lower() in ("a.m", "p.m") and after in ("one", "number", "time")
+        if is_hour and after == "time":
             self.said.take_back()
         self.said.say_names(text[::2].lower(), range(place, place + len(text), 2), False)
-        return place + len(text)
+        end = place + len(text)
+        if is_hour and self.said.at(end) == "." and numbers.is_range(self.said, end + 1):
+            return numbers.read_range(self.said, end + 1)
+        return end
 
     def _read_unit(self, place: int, after: str, is_apart: bool) -> int:
         """Reads a unit behind a number; returns the place behind it, or 0."""
@@ -311,17 +316,18 @@ class _Reader:
         name = "minute_" if context.mark == "h" and unit == "m" else _UNITS[unit]
         power = _POWERS.get(self.said.at(found.end()), "")
         self.said.say(power + inflected(name, after == "number"), place)
-        context.after = "unit" if unit not in ("M", "bn", "sq") else "number"
+        context.after = "unit" if unit not in ("M", "bn", "sq", "fl") else "number"
         context.tail, context.mark = 0, _PARTED.get(name, "")
         end = found.end() + bool(power)
         if context.mark == "f" and self.said.at(end) == ".":
             return end + 1
         return numbers.read_range(self.said, end)
 
-    def _read_run(self, run: str, place: int, after: str, before: str, named: bool) -> bool:
-        """Reads letters that belong together; returns whether a point behind them belongs to them."""
-        said, context, small = self.said, self.context, run.lower()
-        follows = said.at(place + len(run))
+    def _read_run(self, run: str, places: Sequence[int], after: str, before: str, named: bool) -> bool:
+        """Reads letters that belong together, of which the last place is behind them; returns whether a point there
+        belongs to them."""
+        said, context, small, place = self.said, self.context, run.lower(), places[0]
+        follows = said.at(places[-1])
         shouting, context.shouting = context.shouting, False
         context.named = run[0].isupper() and len(run) > 1 and small not in _NO_NAMES
         if context.named and after in _SAINTS:
@@ -335,25 +341,25 @@ class _Reader:
         if number:
             said.say(" ".join(numbers.cardinal(str(number))), place)
             if owner != run:
-                said.add_s(place + len(owner) - 1)
+                said.add_s(places[len(owner) - 1])
         elif named and small in _STREETS:
             said.say_tail(_STREETS[small], place)
             context.after = _STREETS[small]
             return True
         elif small in ("am", "pm") and run in (small, small.upper()) and after in ("one", "number", "time"):
             said.take_back() if after == "time" else None
-            said.say_names(small, range(place, place + 2), False)
+            said.say_names(small, places, False)
         elif small == "o'clock" and after == "time":
             said.take_back()
-            self._spell(run, place)
+            self._spell(run, places)
         elif small in _SCALES and after == "sum":
             said.take_back()
             said.say(f"{small} {inflected(numbers.CURRENCIES[context.currency], True)}", place)
         elif date:
-            self._read_date(run, date, place, after, follows == ".")
+            self._read_date(run, date, places, after, follows == ".")
             return run != date
         elif follows == "." and small in _NUMBERED and run in (small, small.title()) and not self.address:
-            self._spell_tail(run, place)
+            self._spell_tail(run, places)
             context.after, context.short = "no", _NUMBERED[small]
             return True
         elif follows == "." and small in _SHORTS and run != small and not self.address:
@@ -366,47 +372,47 @@ class _Reader:
         elif small == "o" and after == "with":
             said.say("out", place)
         elif small in _PLACES:
-            self._spell(run, place)
+            self._spell(run, places)
             context.after, context.shouting = "place", run.isupper()
-        elif small in _MEANINGS:
+        elif small in _MEANINGS and before not in (";", "&"):
             if _MEANINGS[small] == "-":
-                said.say_names(small, range(place, place + len(small)), False)
+                said.say_names(small, places, False)
             else:
                 said.say(_MEANINGS[small], place)
         elif self.address and before == "." and self._is_spelt_in_address(small):
-            said.say_names(small, range(place, place + len(small)), False)
+            said.say_names(small, places, False)
         elif self._is_spelt(run, before, follows, shouting):
             letters = _capitals(run) or owner
-            said.say_names(letters.lower(), range(place, place + len(letters)), letters != run)
+            said.say_names(letters.lower(), places, letters != run)
         else:
-            self._spell(run, place)
+            self._spell(run, places)
             context.shouting = run.isupper() and (len(run) > 1 or run == "I")
         return False
 
-    def _read_date(self, run: str, name: str, place: int, after: str, is_pointed: bool) -> None:
+    def _read_date(self, run: str, name: str, places: Sequence[int], after: str, is_pointed: bool) -> None:
         """Reads a month or a day, whose name the run is or begins.
 
         Names that are words otherwise are dates behind the number of a day, next to another date and, but for Sat and
         Sun, with a point; if none of this holds, what follows may correct them.
         """
-        context = self.context
+        context, place = self.context, places[0]
         if after == "date":
             self.said.correct(place)
         is_sure = (run[:3] not in _DOUBTFUL or after in ("date", "day")
                    or (is_pointed and run[:3] not in _DOUBTFUL[-2:]))
         context.after = self._month(place, after) if name in numbers.MONTHS else "day"
         if run == name:
-            self._spell(run, place)
+            self._spell(run, places)
         elif is_sure or not context.after:
             self.said.say(name.lower(), place)
         else:
-            self._spell_tail(run, place)
+            self._spell_tail(run, places)
             context.after, context.short = "date", name.lower()
 
-    def _spell_tail(self, run: str, place: int) -> None:
+    def _spell_tail(self, run: str, places: Sequence[int]) -> None:
         """Spells a word that the next one may take back."""
         before = len(self.said.phonemes)
-        self._spell(run, place)
+        self._spell(run, places)
         self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
 
     def _month(self, place: int, after: str) -> str:
@@ -417,9 +423,9 @@ class _Reader:
         numbers.say_ordinal(self.said, str(self.context.day), place)
         return ""
 
-    def _spell(self, run: str, place: int) -> None:
-        sounds = [item.sound for item in self.said.characters[place : place + len(run)]]
-        self.said.spell(run.lower(), lambda letter: place + letter, sounds)
+    def _spell(self, run: str, places: Sequence[int]) -> None:
+        sounds = [self.said.characters[places[letter]].sound for letter in range(len(run))]
+        self.said.spell(run.lower(), lambda letter: places[letter], sounds)
 
     def _is_spelt_in_address(self, small: str) -> bool:
         """Whether a part of an address is read letter by letter: a country, or what has no vowel."""
@@ -433,13 +439,39 @@ class _Reader:
         letters = _capitals(run)
         if not letters:
             return _is_spelt_small(_owner(run).lower())
-        if not 2 <= len(letters) <= 5:
+        if len(letters) == 1:
+            return before == "&" or (before.isascii() and before.isalpha())
+        if len(letters) > 5:
             return False
         if "&" in (before, follows) and letters == run:
             return True
         if letters in _SHOUTED:
             return not shouting
         return letters in _SPELT or not (letters in _WORDS or is_pronounceable(letters))
+
+
+def _run_at(simple: str, place: int) -> Tuple[str, List[int]]:
+    """Letters that belong together, up to a capital behind a small one, and their places, with that behind them.
+
+    Of a letter that is drawn out, as in "sooo", one is read, or two of e and o within a word, as in "goood".
+    """
+    found = _RUN.match(simple, place)
+    assert found is not None
+    run, places, here = "", [place], place
+    while here < found.end() and len(run) < LONGEST and not (run and _CAMEL.match(simple, here)):
+        run += simple[here]
+        here += 1
+        if _DRAWN_OUT.search(run):
+            while simple[here : here + 1] == run[-1]:
+                here += 1
+            goes_on = here < found.end() and simple[here] != "'"
+            if goes_on or len(run) > 3:
+                left = 1 if goes_on and run[-1] in "eoEO" else 2
+                run, places = run[:-left], places[: len(places) - left]
+        places.append(here)
+    while run.endswith("'"):
+        run, places = run[:-1], places[:-1]
+    return run, places
 
 
 def _date_of(run: str) -> str:

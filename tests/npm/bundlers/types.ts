@@ -13,6 +13,8 @@ await Labial.load({ laughter: fetch("laughter.lbm").then((answer) => answer.arra
 
 const arkit = labial.stream({ output: "arkit", labels: "ipa" });
 const open: number | undefined = arkit.tick()?.jawOpen;
+// @ts-expect-error the library comes from load()
+new Labial();
 // @ts-expect-error no weight has this name
 arkit.tick()?.jawOppen;
 // @ts-expect-error this one is VRM's
