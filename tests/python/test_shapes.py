@@ -225,6 +225,10 @@ def test_floors_are_the_mean_pose_of_closures() -> None:
     ignored = dataclasses.replace(heavy, weight=np.zeros(frames.shape))
     assert np.array_equal(floors([sequence([vowel, b] * 10, frames, 10), ignored], SPEECH, 50)[0], found)
     assert (found[vowel] == -300.0).all() and found[b, FAP_NUMBERS.index(3)] == -300.0
+    free, _ = floors([sequence([vowel, b] * 10, frames, 10)], SPEECH, 50, free_corners=True)
+    corners = np.isin(FAP_NUMBERS, (53, 54))
+    sounds = np.arange(len(SPEECH.phonemes)) != SPEECH.phonemes.index("SIL")
+    assert np.isneginf(free[sounds][:, corners]).all() and np.array_equal(free[:, ~corners], found[:, ~corners])
 
 
 def test_widening_scales_targets_about_the_mean_pose() -> None:

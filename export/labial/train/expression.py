@@ -3,6 +3,8 @@
 A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. So the
 target in such a phoneme does not fall below a *floor*, the mean pose of people. In no phoneme does the target fall
 below a value that people hardly ever reach: protrusion ends at lips at rest, which a sum of curves does not respect.
+Where talkers are random effects the corners have no such value: it would be that of all talkers brought to one scale,
+while `shared_gains` then widens the corners as far as each moves his own.
 
 FAP 17 is a function of the corners (docs/method.md, Protrusion): the lips protrude as far as the corners come in. How
 far is an isotonic regression on the recordings that teach FAP 17, as a table with linear pieces. A model's corners
@@ -48,12 +50,15 @@ FIRMNESS = 2.0
 FIRMEST = {"bilabial": 0.5, "labiodental": 0.9}
 
 
-def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int) -> Tuple[np.ndarray, np.ndarray]:
-    """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile; and
-    (P, 13) bool: where it is contact, or lips are HELD. The pose is the mean, by weight, over the FIRMEST occurrences
-    of the phoneme's class, each at its frame of closest contact."""
+def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int,
+           free_corners: bool = False) -> Tuple[np.ndarray, np.ndarray]:
+    """(P, 13) FAP: the pose of contact in the phonemes and channels that make it, elsewhere the LEAST percentile, but
+    -inf for `free_corners`; and (P, 13) bool: where it is contact, or lips are HELD. The pose is the mean, by weight,
+    over the FIRMEST occurrences of the phoneme's class, each at its frame of closest contact."""
     least = np.array([np.percentile(taught(material, channel), LEAST) for channel in range(CHANNELS)])
     result = np.tile(least, (len(phone_set.phonemes), 1))
+    if free_corners:
+        result[:, CORNERS] = -np.inf
     contacts = np.zeros(result.shape, dtype=bool)
     classes = np.array(phone_set.viseme_class)
     margin = round(MARGIN * fps)

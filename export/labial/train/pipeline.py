@@ -291,7 +291,7 @@ def _fit_shapes(setting: _Setting, material: Sequence[Recording], talkers: Dict[
         none = Kernels(np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64), tables,
                        np.zeros((0, 3), dtype=np.int64), np.zeros((0, 1, CHANNELS)))
         return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
-    floor, contact = floors(material, setting.phone_set, setting.fps)
+    floor, contact = floors(material, setting.phone_set, setting.fps, free_corners=setting.talker_variance is not None)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     asked = regression(material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
                        _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
