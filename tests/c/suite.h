@@ -26,6 +26,11 @@
 #define assert_in_range(found, low, high)                                                                              \
     suite_within(#found, (long long)(found), (long long)(low), (long long)(high), __FILE__, __LINE__)
 
+/* A call that must succeed. */
+#define assert_ok(call) assert_int_equal(call, LABIAL_OK)
+
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
 /* Ends the line of a comparison, and the test. */
 static inline void suite_fail(const char *file, int line)
 {

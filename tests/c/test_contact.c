@@ -127,7 +127,7 @@ static void teeth(const char *text, const char *wanted)
 /* A contact lasts three frames at least; would catch a frame too few or too many, at either side. */
 TEST(short_stops_borrow_frames)
 {
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     lips("t3 p0 t3", "......");
     lips("t3 p1 t3", "..xxx..");
     lips("t3 p2 t3", "..xxx...");
@@ -169,7 +169,7 @@ TEST(close_contacts_are_told_apart)
     int16_t *floor = f.floors + (f.phonemes[at].floor - 1) * LABIAL_CHANNELS;
     floor[channel] = 1000;
     f.contacts[0] = 1u << channel;
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
         const size_t n = speak(cases[i].text);
         assert_int_equal(n, strlen(cases[i].where));
         for (size_t t = 0; t < n; t++) {
@@ -333,7 +333,7 @@ TEST(a_library_that_sees_too_little_refuses_floors)
     f.model.floor_count = 0;
     f.phonemes[FIXTURE_P].floor = f.phonemes[FIXTURE_O].floor = 0;
     f.phonemes[FIXTURE_S].floor = f.phonemes[FIXTURE_SIL].floor = 0;
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
 }
 
 #endif

@@ -64,8 +64,8 @@ static void begin(int32_t slew, int32_t acceleration, unsigned ahead)
     memset(memory, 0xa5, sizeof memory);
     memory[LABIAL_FACE_SIZE(1, ahead) / 4] = CANARY;
     values[1] = CANARY;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-    assert_int_equal(labial_face_init(&face, &rig, 50, ahead, memory, LABIAL_FACE_SIZE(1, ahead)), LABIAL_OK);
+    assert_ok(labial_rig_check(&rig));
+    assert_ok(labial_face_init(&face, &rig, 50, ahead, memory, LABIAL_FACE_SIZE(1, ahead)));
     assert_int_equal(memory[LABIAL_FACE_SIZE(1, ahead) / 4], CANARY);
 }
 
@@ -98,7 +98,7 @@ TEST(face_begins_at_rest)
 TEST(frames_come_out_in_order)
 {
     static const unsigned aheads[] = { 0, 1, 2, 7, AHEAD_MOST };
-    for (unsigned k = 0; k < sizeof aheads / sizeof aheads[0]; k++) {
+    for (unsigned k = 0; k < COUNT_OF(aheads); k++) {
         const unsigned ahead = aheads[k];
         begin(0, 0, ahead);
         for (unsigned i = 0; i < 100; i++) {
@@ -129,12 +129,12 @@ TEST(face_holds_and_rests)
                 assert_int_equal(tick(LABIAL_STARVED), 1700);
         } else {
             give(1900); /* and is not shown */
-            assert_int_equal(labial_face_cancel(&face, 20 * EASE), LABIAL_OK);
+            assert_ok(labial_face_cancel(&face, 20 * EASE));
         }
         for (unsigned i = 0; i < EASE; i++)
             assert_int_equal(tick(LABIAL_STARVED), way[i]);
         assert_int_equal(tick(LABIAL_DONE), 1400);
-        assert_int_equal(labial_face_cancel(&face, 20 * EASE), LABIAL_OK);
+        assert_ok(labial_face_cancel(&face, 20 * EASE));
         assert_int_equal(tick(LABIAL_DONE), 1400);
         give(1700); /* and goes on */
         assert_int_equal(tick(LABIAL_OK), 1700);
@@ -221,11 +221,11 @@ TEST(frames_wait_again_after_a_pause)
 TEST(play_does_not_wait)
 {
     begin(0, 0, 9);
-    assert_int_equal(labial_face_play(&face), LABIAL_OK); /* there is nothing */
+    assert_ok(labial_face_play(&face)); /* there is nothing */
     give(1700);
     give(1800);
     tick(LABIAL_WAITING);
-    assert_int_equal(labial_face_play(&face), LABIAL_OK);
+    assert_ok(labial_face_play(&face));
     assert_int_equal(tick(LABIAL_OK), 1700);
     assert_int_equal(tick(LABIAL_OK), 1800);
     tick(LABIAL_STARVED);
@@ -239,14 +239,14 @@ TEST(skip_passes_over)
     begin(0, 0, 3);
     for (int32_t i = 0; i < 3; i++)
         give(1700 + i);
-    assert_int_equal(labial_face_skip(&face, 2), LABIAL_OK);
+    assert_ok(labial_face_skip(&face, 2));
     tick(LABIAL_WAITING);
     give(1703);
     assert_int_equal(tick(LABIAL_OK), 1700);
-    assert_int_equal(labial_face_skip(&face, 0), LABIAL_OK);
-    assert_int_equal(labial_face_skip(&face, 1), LABIAL_OK);
+    assert_ok(labial_face_skip(&face, 0));
+    assert_ok(labial_face_skip(&face, 1));
     assert_int_equal(tick(LABIAL_OK), 1702);
-    assert_int_equal(labial_face_skip(&face, 9), LABIAL_OK);
+    assert_ok(labial_face_skip(&face, 9));
     assert_int_equal(tick(LABIAL_STARVED), 1702);
 }
 
@@ -313,7 +313,7 @@ TEST(values_are_frames)
     static const int32_t shown[] = { 1450, 1510, 1450, 1510 };
     begin(60, 0, 0);
     for (unsigned i = 0; i < 4; i++) {
-        assert_int_equal(labial_face_values(&face, &wanted[i]), LABIAL_OK);
+        assert_ok(labial_face_values(&face, &wanted[i]));
         assert_int_equal(tick(LABIAL_OK), shown[i]);
     }
 }
@@ -329,11 +329,11 @@ TEST(sounds_move_it)
     outputs[0].contact = 0;
     outputs[0].closed = 0;
     outputs[0].neutral = JAW_REST;
-    assert_int_equal(labial_face_visemes(&face, faps, shares), LABIAL_OK);
+    assert_ok(labial_face_visemes(&face, faps, shares));
     assert_int_equal(tick(LABIAL_OK), JAW_REST + 60);
-    assert_int_equal(labial_face_visemes(&face, faps, shares), LABIAL_OK);
+    assert_ok(labial_face_visemes(&face, faps, shares));
     assert_int_equal(tick(LABIAL_OK), JAW_REST + 100);
-    assert_int_equal(labial_face_visemes(&face, faps, NULL), LABIAL_OK);
+    assert_ok(labial_face_visemes(&face, faps, NULL));
     assert_int_equal(tick(LABIAL_OK), JAW_REST + 40);
     for (unsigned i = 0; i < HOLD + EASE && labial_face_tick(&face, values) != LABIAL_DONE; i++)
         assert_in_range(values[0], JAW_REST, JAW_REST + 40);
@@ -378,9 +378,9 @@ TEST(soft_start_attaches_one_by_one)
     outputs[0] = outputs[1] = outputs[2] = jaw(0, 0);
     outputs[2].acceleration = 100;
     rig.count = 3;
-    assert_int_equal(labial_face_init(&face, &rig, 50, 1, memory, sizeof memory), LABIAL_OK);
+    assert_ok(labial_face_init(&face, &rig, 50, 1, memory, sizeof memory));
     assert_int_equal(labial_face_attached(&face), 3);
-    assert_int_equal(labial_face_soft_start(&face, 4), LABIAL_OK);
+    assert_ok(labial_face_soft_start(&face, 4));
     for (unsigned i = 0; i < 20; i++) {
         const unsigned attached = 1 + i / 4;
         assert_int_equal(labial_face_attached(&face), attached < 3 ? attached : 3);
@@ -408,7 +408,7 @@ TEST(place_is_where_it_begins)
     static const int32_t there = 1700, far = 99999;
     begin(60, 0, 0);
     labial_face_soft_start(&face, 9);
-    assert_int_equal(labial_face_place(&face, &there), LABIAL_OK);
+    assert_ok(labial_face_place(&face, &there));
     assert_int_equal(labial_face_attached(&face), 1);
     assert_int_equal(tick(LABIAL_STARVED), 1640);
     give(1900);
@@ -472,10 +472,10 @@ TEST(clock_keeps_its_rate)
 {
     static const uint32_t starts[] = { 0, 0x7ffffff0u, 0x80000000u, 0xfffffc18u, 0xffffffffu };
     static const unsigned rates[] = { 1, 7, 24, 25, 30, 50, 60, 300, 999, 1000 };
-    for (unsigned s = 0; s < sizeof starts / sizeof starts[0]; s++) {
-        for (unsigned r = 0; r < sizeof rates / sizeof rates[0]; r++) {
+    for (unsigned s = 0; s < COUNT_OF(starts); s++) {
+        for (unsigned r = 0; r < COUNT_OF(rates); r++) {
             begin(0, 0, 0);
-            assert_int_equal(labial_face_init(&face, &rig, rates[r], 0, memory, sizeof memory), LABIAL_OK);
+            assert_ok(labial_face_init(&face, &rig, rates[r], 0, memory, sizeof memory));
             uint32_t count = 0;
             for (uint32_t ms = 0; ms < 10000; ms++) {
                 while (labial_face_due(&face, starts[s] + ms)) {
@@ -787,7 +787,7 @@ static void any_frame(void)
                                   : (int32_t)(fixture_random(&dice) & 0x7fffffffu) - 0x40000000;
             wanted[i] = limited(numbers[i], outputs[i].minimum, outputs[i].maximum);
         }
-        assert_int_equal(labial_face_values(&face, numbers), LABIAL_OK);
+        assert_ok(labial_face_values(&face, numbers));
     }
     model_frame(wanted);
 }
@@ -802,12 +802,12 @@ TEST(contract_holds_for_all_calls)
         rig.count = (uint16_t)(1u + below(OUTPUTS));
         for (unsigned i = 0; i < rig.count; i++)
             outputs[i] = any_output();
-        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        assert_ok(labial_rig_check(&rig));
         const size_t size = LABIAL_FACE_SIZE(rig.count, ahead);
         memset(memory, 0xa5, sizeof memory);
         memory[size / 4] = CANARY;
         values[rig.count] = CANARY;
-        assert_int_equal(labial_face_init(&face, &rig, 50, ahead, memory, size), LABIAL_OK);
+        assert_ok(labial_face_init(&face, &rig, 50, ahead, memory, size));
         model_begin(ahead);
         labial_rig_rest(&rig, last);
         memset(before, 0, sizeof before);
@@ -820,22 +820,22 @@ TEST(contract_holds_for_all_calls)
                 uint32_t slow;
                 switch (steady ? 0 : below(26)) {
                 case 25:
-                    assert_int_equal(labial_face_play(&face), LABIAL_OK);
+                    assert_ok(labial_face_play(&face));
                     model.plays = model.plays || model.tail > model.head;
                     break;
                 case 24:
-                    assert_int_equal(labial_face_skip(&face, late), LABIAL_OK);
+                    assert_ok(labial_face_skip(&face, late));
                     model_skip(late);
                     break;
                 case 20:
                     slow = late < 5 ? late * late * 13 : UINT32_MAX;
-                    assert_int_equal(labial_face_cancel(&face, slow), LABIAL_OK);
+                    assert_ok(labial_face_cancel(&face, slow));
                     model_cancel(slow);
                     break;
                 case 21:
                     model.apart = between(1, 30);
                     model.start = model.now;
-                    assert_int_equal(labial_face_soft_start(&face, (unsigned)model.apart), LABIAL_OK);
+                    assert_ok(labial_face_soft_start(&face, (unsigned)model.apart));
                     break;
                 case 22:
                     for (unsigned i = 0; i < rig.count; i++) {
@@ -844,7 +844,7 @@ TEST(contract_holds_for_all_calls)
                         model.value[i] = last[i];
                     }
                     model.apart = 0;
-                    assert_int_equal(labial_face_place(&face, last), LABIAL_OK);
+                    assert_ok(labial_face_place(&face, last));
                     break;
                 case 23:
                     for (unsigned burst = below(2 * ahead + 3); burst > 0; burst--)
@@ -892,7 +892,7 @@ TEST(unchecked_rigs_stay_defined)
             bytes[i] = (uint8_t)(below(3) ? below(256) : below(2) ? 0x80 : 0xff);
         outputs[0].curve = NULL;
         values[1] = CANARY;
-        assert_int_equal(labial_face_init(&face, &rig, 1u + below(1000), 3, memory, sizeof memory), LABIAL_OK);
+        assert_ok(labial_face_init(&face, &rig, 1u + below(1000), 3, memory, sizeof memory));
         for (unsigned i = 0; i < 20; i++) {
             int32_t any = (int32_t)(fixture_random(&dice) & 0x7fffffffu) - (int32_t)below(0x7fffffff);
             give((int32_t)below(3000));
@@ -939,13 +939,12 @@ TEST(streams_always_close)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(200); round++) {
         begin(25, round % 2 ? 8 : 0, below(12));
         outputs[0].gain = LABIAL_RIG_GAIN(4, 1);
-        assert_int_equal(labial_init(&stream, &speech.model, workspace, sizeof workspace, labial_face_frame, &face),
-                         LABIAL_OK);
+        assert_ok(labial_init(&stream, &speech.model, workspace, sizeof workspace, labial_face_frame, &face));
         labial_face_tick(&face, values);
         for (unsigned turn = 0; turn < 4; turn++) {
             const unsigned phonemes = 1 + below(6);
             for (unsigned i = 0; i < phonemes; i++)
-                assert_int_equal(labial_push(&stream, below(4), 60 + below(300)), LABIAL_OK);
+                assert_ok(labial_push(&stream, below(4), 60 + below(300)));
             for (unsigned left = 10 + below(40); left > 0; left--) {
                 assert_true(labial_tick(&stream) >= 0);
                 labial_face_tick(&face, values);
@@ -978,15 +977,15 @@ TEST(streams_always_close)
                 labial_init(&stream, &speech.model, workspace, sizeof workspace, labial_face_frame, &face);
                 continue;
             default:
-                assert_int_equal(labial_use(&stream, &laughter.model), LABIAL_OK);
-                assert_int_equal(labial_push(&stream, FIXTURE_HA, 200), LABIAL_OK);
+                assert_ok(labial_use(&stream, &laughter.model));
+                assert_ok(labial_push(&stream, FIXTURE_HA, 200));
                 labial_end(&stream);
                 until_rest();
-                assert_int_equal(labial_restart(&stream), LABIAL_OK);
-                assert_int_equal(labial_use(&stream, &speech.model), LABIAL_OK);
+                assert_ok(labial_restart(&stream));
+                assert_ok(labial_use(&stream, &speech.model));
                 continue;
             }
-            assert_int_equal(labial_restart(&stream), LABIAL_OK);
+            assert_ok(labial_restart(&stream));
         }
     }
     assert_true(wide > FIXTURE_ROUNDS(200));

@@ -15,7 +15,7 @@
 #include "hears.h"
 #include "labial/hear.h"
 
-#define HEARS (sizeof hears / sizeof hears[0])
+#define HEARS COUNT_OF(hears)
 #define LONGEST 60000u
 #define FRAMES 1100u
 
@@ -57,10 +57,8 @@ static void begin(uint32_t rate, unsigned channels)
 {
     frame_count = stretch_count = 0;
     first_frame = 0;
-    assert_int_equal(
-        labial_hear_init(&hear, &hear_fixture, rate, channels, workspace, sizeof workspace, on_frame, &user),
-        LABIAL_OK);
-    assert_int_equal(labial_hear_classes(&hear, on_class), LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, rate, channels, workspace, sizeof workspace, on_frame, &user));
+    assert_ok(labial_hear_classes(&hear, on_class));
 }
 
 /* A sound of hears.py, in the second channel upside down and half as loud. */
@@ -103,7 +101,7 @@ static void push_in_blocks(uint32_t count, unsigned channels, uint32_t block)
     const int16_t *at = samples;
     while (count > 0) {
         const uint32_t part = count < block ? count : block;
-        assert_int_equal(labial_hear_push(&hear, at, part), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, at, part));
         at += part * channels;
         count -= part;
     }
@@ -127,7 +125,7 @@ TEST(frames_and_classes_are_the_exporters)
         begin(hears[i].rate, hears[i].channels);
         make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
         push_in_blocks(hears[i].samples, hears[i].channels, LONGEST);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_end(&hear));
         assert_int_equal(frame_count, hears[i].frames);
         assert_int_equal(faps_crc(), hears[i].faps_crc);
         assert_int_equal(stretch_count, hears[i].stretches);
@@ -144,7 +142,7 @@ TEST(sounds_are_those_of_the_classes_that_lead)
     begin(16000, 1);
     make_sound(3, 32000, 1);
     push_in_blocks(32000, 1, LONGEST);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_true(frame_count >= 100);
     for (i = 0; i < stretch_count; i++)
         memset(leaders + stretches[i][1], (int)stretches[i][0], stretches[i][2]);
@@ -173,15 +171,15 @@ TEST(sounds_are_those_of_the_classes_that_lead)
     assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
     for (i = 100; i < frame_count; i++)
         assert_true(sounds[i][LABIAL_VISEME_SIL] >= sounds[i - 1][LABIAL_VISEME_SIL]);
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
+    assert_ok(labial_hear_visemes(&hear, visemes, sounds[0]));
     assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK); /* before there was a frame */
+    assert_ok(labial_hear_cancel(&hear, 200)); /* before there was a frame */
     assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
     push_in_blocks(16000, 1, LONGEST);
-    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK);
-    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_ok(labial_hear_cancel(&hear, 200));
+    assert_ok(labial_hear_visemes(&hear, visemes, sounds[0]));
     assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
     assert_int_equal(labial_hear_visemes(NULL, visemes, sounds[0]), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_visemes(&hear, NULL, sounds[0]), LABIAL_ERROR_NULL);
@@ -196,11 +194,11 @@ TEST(blocks_of_any_length_give_the_same_frames)
     static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
     unsigned i, b;
     for (i = 5; i < HEARS; i += 7)
-        for (b = 0; b < sizeof blocks / sizeof blocks[0]; b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
+        for (b = 0; b < COUNT_OF(blocks); b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
             begin(hears[i].rate, hears[i].channels);
             make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
             push_in_blocks(hears[i].samples, hears[i].channels, blocks[b]);
-            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+            assert_ok(labial_hear_end(&hear));
             assert_int_equal(faps_crc(), hears[i].faps_crc);
             assert_int_equal(classes_crc(), hears[i].classes_crc);
         }
@@ -211,7 +209,7 @@ TEST(a_frame_is_known_when_latency_says)
 {
     static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
     unsigned i;
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+    for (i = 0; i < COUNT_OF(rates); i++) {
         const uint32_t frame = rates[i] / LABIAL_HEAR_FPS;
         uint32_t pushed, delay;
         begin(rates[i], 1);
@@ -223,7 +221,7 @@ TEST(a_frame_is_known_when_latency_says)
         for (pushed = 1; pushed < 8u * frame; pushed++) {
             const uint32_t heard = 1u + (pushed - 1u) / frame; /* but for the filter */
             labial_latency_t latency;
-            assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_OK);
+            assert_ok(labial_hear_push(&hear, samples, 1));
             latency = labial_hear_latency(&hear);
             assert_true(frame_count == 0 || pushed * 1000u >= (delay - 1u + 20u * (frame_count - 1u)) * rates[i]);
             assert_true(frame_count > 2 || pushed * 1000u < (delay + 20u * frame_count) * rates[i]);
@@ -269,11 +267,11 @@ TEST(a_stream_may_be_moved)
     assert_int_equal(hears[54].sound, 5);
     begin(48000, 2);
     make_sound(5, hears[54].samples, 2);
-    assert_int_equal(labial_hear_push(&hear, samples, 1000), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 1000));
     memcpy(&other, &hear, sizeof other);
     memset(&hear, 0xa5, sizeof hear);
-    assert_int_equal(labial_hear_push(&other, samples + 2000, hears[54].samples - 1000u), LABIAL_OK);
-    assert_int_equal(labial_hear_end(&other), LABIAL_OK);
+    assert_ok(labial_hear_push(&other, samples + 2000, hears[54].samples - 1000u));
+    assert_ok(labial_hear_end(&other));
     assert_int_equal(faps_crc(), hears[54].faps_crc);
 }
 
@@ -283,17 +281,17 @@ TEST(a_stream_may_be_moved)
 TEST(nothing_follows_the_end)
 {
     begin(16000, 1);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 0);
     assert_int_equal(stretch_count, 0);
     begin(16000, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, 0), LABIAL_OK);
-    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 0));
+    assert_ok(labial_hear_exact(&hear, 1));
     make_sound(3, 321, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, 321), LABIAL_OK);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 321));
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 2);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 2);
     assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
 }
@@ -306,9 +304,9 @@ TEST(the_face_comes_to_rest_after_the_end)
     make_sound(3, 8000, 1);
     for (exact = 1; exact >= 0; exact--) {
         begin(16000, 1);
-        assert_int_equal(labial_hear_exact(&hear, exact), LABIAL_OK);
+        assert_ok(labial_hear_exact(&hear, exact));
         push_in_blocks(8000, 1, 333);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_end(&hear));
         count = 25;
         assert_int_equal(frame_count, exact ? count : count + LABIAL_EASE_FRAMES);
         assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], count);
@@ -319,7 +317,7 @@ TEST(the_face_comes_to_rest_after_the_end)
             const double error = told[count + f][k] - told[count - 1u][k] * (1 - share);
             assert_true(error > -1.1 && error < 1.1);
         }
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
     assert_int_equal(labial_hear_exact(NULL, 1), LABIAL_ERROR_NULL);
     memset(&hear, 0, sizeof hear);
     assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_ERROR_STATE);
@@ -359,8 +357,8 @@ TEST(an_offset_is_silence_at_either_end)
     static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
     static const int offsets[] = { 1000, -3300, 9830 };
     unsigned i, o, f, k, round;
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
-        for (o = 0; o < sizeof offsets / sizeof offsets[0]; o++) {
+    for (i = 0; i < COUNT_OF(rates); i++)
+        for (o = 0; o < COUNT_OF(offsets); o++) {
             const uint32_t silence = rates[i] * 2u / 5u + 37u * o, voice = rates[i] / 10u;
             begin(rates[i], 1);
             for (round = 0; round < 4u; round++) {
@@ -369,14 +367,14 @@ TEST(an_offset_is_silence_at_either_end)
                 add_offset(silence, offsets[o]);
                 push_in_blocks(silence, 1, 1000);
                 if (round == 1u)
-                    assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
+                    assert_ok(labial_hear_cancel(&hear, 100));
                 else
-                    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+                    assert_ok(labial_hear_end(&hear));
                 for (f = before; f < frame_count; f++)
                     for (k = 0; k < LABIAL_CHANNELS; k++)
                         assert_int_equal(told[f][k], 0);
                 assert_true(frame_count >= before + 20u);
-                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                assert_ok(labial_hear_restart(&hear));
                 before = frame_count; /* and behind a voice, which is noise */
                 make_sound(3, voice, 1);
                 for (f = 0; f < voice; f++)
@@ -384,7 +382,7 @@ TEST(an_offset_is_silence_at_either_end)
                 memset(samples + voice, 0, silence * sizeof *samples);
                 add_offset(voice + silence, offsets[o]);
                 push_in_blocks(voice + silence, 1, 777);
-                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+                assert_ok(labial_hear_end(&hear));
                 for (f = before; f < before + 6u; f++)
                     for (k = 0; k < LABIAL_CHANNELS; k++)
                         moved += told[f][k] != 0;
@@ -393,7 +391,7 @@ TEST(an_offset_is_silence_at_either_end)
                     for (k = 0; k < LABIAL_CHANNELS; k++)
                         assert_int_equal(told[f][k], 0);
                 assert_true(frame_count > before + 20u && frame_count < before + 28u); /* at rest: no way there */
-                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                assert_ok(labial_hear_restart(&hear));
             }
         }
 }
@@ -414,10 +412,10 @@ TEST(an_offset_changes_no_frame)
             add_offset(length, offset);
             push_in_blocks(length, 1, 500);
             if (round == 1u)
-                assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
+                assert_ok(labial_hear_cancel(&hear, 100));
             else
-                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
-            assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                assert_ok(labial_hear_end(&hear));
+            assert_ok(labial_hear_restart(&hear));
         }
         if (offset == 0) {
             count = frame_count;
@@ -439,13 +437,13 @@ TEST(a_cancel_eases_to_the_neutral_face)
                   { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 } };
     unsigned i, f, k;
     make_sound(3, 8000, 1);
-    for (i = 0; i < sizeof eases / sizeof eases[0]; i++) {
+    for (i = 0; i < COUNT_OF(eases); i++) {
         unsigned before;
         begin(16000, 1);
         push_in_blocks(8000, 1, 333);
         before = frame_count;
         assert_true(before > 10u);
-        assert_int_equal(labial_hear_cancel(&hear, eases[i].milliseconds), LABIAL_OK);
+        assert_ok(labial_hear_cancel(&hear, eases[i].milliseconds));
         assert_int_equal(frame_count, before + eases[i].frames);
         for (f = before; f < frame_count; f++)
             for (k = 0; k < LABIAL_CHANNELS; k++) {
@@ -456,11 +454,11 @@ TEST(a_cancel_eases_to_the_neutral_face)
             assert_int_equal(told[frame_count - 1u][k], 0);
         assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before);
         assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_end(&hear));
         assert_int_equal(frame_count, before + eases[i].frames);
         assert_int_equal(labial_hear_latency(&hear).frames, 0);
-        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK); /* of no sound: nothing was left behind */
+        assert_ok(labial_hear_restart(&hear));
+        assert_ok(labial_hear_end(&hear)); /* of no sound: nothing was left behind */
         assert_int_equal(frame_count, before + eases[i].frames);
     }
 }
@@ -487,11 +485,11 @@ TEST(noise_before_a_voice_is_rest)
 TEST(a_restart_keeps_the_level)
 {
     unsigned i;
-    for (i = 0; i < sizeof hears_again / sizeof hears_again[0]; i++) {
+    for (i = 0; i < COUNT_OF(hears_again); i++) {
         begin(16000, 1);
         assert_int_equal(labial_hear_level(&hear), LABIAL_HEAR_LEVEL_BEGIN);
         if (hears_again[i].set > 0) {
-            assert_int_equal(labial_hear_set_level(&hear, hears_again[i].set), LABIAL_OK);
+            assert_ok(labial_hear_set_level(&hear, hears_again[i].set));
             assert_int_equal(labial_hear_level(&hear), hears_again[i].set);
         }
         make_sound(hears_again[i].sound, hears_again[i].samples, 1);
@@ -500,7 +498,7 @@ TEST(a_restart_keeps_the_level)
         labial_hear_end(&hear);
         assert_int_equal(frame_count, hears_again[i].frames);
         assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
-        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+        assert_ok(labial_hear_restart(&hear));
         assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
         first_frame += frame_count;
         frame_count = 0;
@@ -511,8 +509,8 @@ TEST(a_restart_keeps_the_level)
         assert_int_equal(faps_crc(), hears_again[i].next_crc);
         assert_int_equal(labial_hear_level(&hear), hears_again[i].next_level);
     }
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN), LABIAL_OK);
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX), LABIAL_OK);
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN));
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX));
     assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN - 1), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX + 1), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_hear_set_level(NULL, LABIAL_HEAR_LEVEL_MIN), LABIAL_ERROR_NULL);
@@ -542,8 +540,8 @@ TEST(a_restart_fades_and_then_hears_afresh)
     assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
     labial_hear_end(&hear);
     before = frame_count;
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN));
     make_sound(5, 9000, 1);
     push_in_blocks(9000, 1, 500);
     labial_hear_end(&hear);
@@ -570,13 +568,12 @@ static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAM
         scale[k] = (int16_t)(hear_fixture.scale[k] % 200);
     model.scale = scale;
     begin(16000, 1);
-    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user),
-                     LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user));
     labial_hear_exact(&hear, 1);
     make_sound(3, 16000, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, after), LABIAL_OK);
-    assert_int_equal(labial_hear_articulation(&hear, percent), LABIAL_OK);
-    assert_int_equal(labial_hear_push(&hear, samples + after, 16000 - after), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, after));
+    assert_ok(labial_hear_articulation(&hear, percent));
+    assert_ok(labial_hear_push(&hear, samples + after, 16000 - after));
     labial_hear_end(&hear);
     memcpy(frames, told, sizeof told);
     return frame_count;
@@ -617,7 +614,7 @@ TEST(closed_lips_stay_closed)
     model.scale = zero;
     model.closed = ones;
     model.closing = all;
-    for (unsigned i = 0; i < sizeof gains / sizeof gains[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(gains); i++) {
         heads[HEAR_FIXTURE_CLASSES] = 32767; /* the score of closed lips */
         model.mean = zero;
         labial_hear_pose(&model, heads, gains[i], pose);
@@ -647,7 +644,7 @@ TEST(articulation_comes_nearer_by_ten)
             if (fabs(less[t][k] - plain[t][k] * share) > abs(plain[t][k]) * 0.12 + 12)
                 fail_msg("frame %u, channel %u: %d of %d", t, k, less[t][k], plain[t][k]);
         }
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
     frame_count = 0;
     first_frame = count;
     push_in_blocks(16000, 1, 16000);
@@ -663,7 +660,7 @@ TEST(classes_are_told_only_where_they_are_asked_for)
 {
     make_sound(3, 8000, 1);
     begin(16000, 1);
-    assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_OK);
+    assert_ok(labial_hear_classes(&hear, NULL));
     push_in_blocks(8000, 1, 8000);
     labial_hear_end(&hear);
     assert_int_equal(stretch_count, 0);
@@ -683,9 +680,7 @@ TEST(the_workspace_has_the_size_that_both_formulas_give)
     assert_int_equal(labial_hear_workspace_size(NULL), 0);
     memset(exact, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
     begin(16000, 1);
-    assert_int_equal(
-        labial_hear_init(&hear, &hear_fixture, 16000, 1, exact, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &user),
-        LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, exact, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &user));
     make_sound(5, 16000, 1);
     push_in_blocks(16000, 1, 1000);
     labial_hear_end(&hear);
@@ -706,7 +701,7 @@ TEST(wrong_arguments_are_refused)
     assert_int_equal(labial_hear_init(&hear, NULL, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, NULL, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size, NULL, NULL), LABIAL_ERROR_NULL);
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
+    for (i = 0; i < COUNT_OF(rates); i++)
         assert_int_equal(labial_hear_init(&hear, &hear_fixture, rates[i], 1, workspace, size, on_frame, NULL),
                          LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 0, workspace, size, on_frame, NULL),
@@ -767,12 +762,11 @@ static void call_again_for_class(void *given, unsigned shown, uint32_t frame, ui
 TEST(callbacks_cannot_change_their_stream)
 {
     refused = 0;
-    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace, call_again, NULL),
-                     LABIAL_OK);
-    assert_int_equal(labial_hear_classes(&hear, call_again_for_class), LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace, call_again, NULL));
+    assert_ok(labial_hear_classes(&hear, call_again_for_class));
     make_sound(0, 960, 1);
     push_in_blocks(960, 1, 960);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_true(refused >= 6u * 4u);
     assert_int_equal(refused % 6u, 0);
 }
@@ -797,7 +791,7 @@ static void begin_anew(void)
         with ? LABIAL_OK : LABIAL_ERROR_NULL);
     again++;
     if (with > 1)
-        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, 9600));
 }
 
 static void begin_anew_at_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -837,16 +831,15 @@ TEST(a_callback_may_begin_anew)
                 int result;
                 begun = 0;
                 anew = 0;
-                assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace,
-                                                  by_class ? keep_frame : begin_anew_at_frame, NULL),
-                                 LABIAL_OK);
-                assert_int_equal(labial_hear_classes(&hear, by_class ? begin_anew_at_class : NULL), LABIAL_OK);
+                assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace,
+                                           by_class ? keep_frame : begin_anew_at_frame, NULL));
+                assert_ok(labial_hear_classes(&hear, by_class ? begin_anew_at_class : NULL));
                 anew = call > 0 ? UINT32_MAX : 2;
-                assert_int_equal(labial_hear_push(&hear, samples, 8000), LABIAL_OK);
+                assert_ok(labial_hear_push(&hear, samples, 8000));
                 if (call > 0) {
                     anew = 1;
                     result = call == 1 ? labial_hear_end(&hear) : labial_hear_cancel(&hear, 100);
-                    assert_int_equal(result, LABIAL_OK);
+                    assert_ok(result);
                 }
                 assert_int_equal(again, before + 1u);
                 assert_int_equal(begun, with > 1 ? 15 : 0); /* 20 frames of 480, of which five are still to come */
@@ -865,19 +858,18 @@ TEST(a_callback_may_begin_anew_at_any_rate)
     for (length = 4800; length < 5280; length += 5) {
         const unsigned at_end = length % 2, before = again;
         begun = 0;
-        assert_int_equal(
-            labial_hear_init(&hear, &hear_fixture, 24000, 2, workspace, sizeof workspace, begin_anew_at_frame, NULL),
-            LABIAL_OK);
+        assert_ok(
+            labial_hear_init(&hear, &hear_fixture, 24000, 2, workspace, sizeof workspace, begin_anew_at_frame, NULL));
         anew = at_end ? UINT32_MAX : 2;
-        assert_int_equal(labial_hear_push(&hear, samples, length), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, length));
         if (at_end) {
             anew = 1;
-            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+            assert_ok(labial_hear_end(&hear));
         }
         assert_int_equal(again, before + 1u);
         assert_int_equal(begun, 0);
-        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, 9600));
+        assert_ok(labial_hear_end(&hear));
         assert_true(begun >= 20);
     }
 }

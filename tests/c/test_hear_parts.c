@@ -27,7 +27,7 @@ static int16_t out[2u * OUT];
 static unsigned convert_tone(uint32_t rate, double hertz, unsigned count)
 {
     unsigned i, made = 0;
-    assert_int_equal(labial_hear_convert_init(&convert, rate), LABIAL_OK);
+    assert_ok(labial_hear_convert_init(&convert, rate));
     for (i = 0; i < count; i++) {
         const int32_t sample = (int32_t)lround(10000 * sin(2 * PI * hertz * i / rate));
         const unsigned more = labial_hear_convert(&convert, sample, out + made);
@@ -54,7 +54,7 @@ static const struct {
     unsigned reach; /* samples that follow before a sample is converted */
 } rates[] = { { 8000, 6 }, { 12000, 6 }, { 22050, 8 }, { 24000, 8 }, { 32000, 11 }, { 44100, 16 }, { 48000, 16 } };
 
-#define RATES (sizeof rates / sizeof rates[0])
+#define RATES COUNT_OF(rates)
 
 /* Would catch another gain or delay than none, and phases that jump. */
 TEST(low_tones_keep_their_level_and_place)
@@ -62,7 +62,7 @@ TEST(low_tones_keep_their_level_and_place)
     static const double tones[] = { 100, 500, 1000, 2000, 3000 };
     unsigned i, t;
     for (i = 0; i < RATES; i++)
-        for (t = 0; t < sizeof tones / sizeof tones[0]; t++) {
+        for (t = 0; t < COUNT_OF(tones); t++) {
             const unsigned made = convert_tone(rates[i].rate, tones[t], rates[i].rate / 10u);
             if (tones[t] > rates[i].rate * 0.3)
                 continue;
@@ -77,7 +77,7 @@ TEST(tones_beyond_8_kHz_vanish)
     static const double tones[] = { 10500, 12000, 15000, 19000, 21000 };
     unsigned i, t;
     for (i = 0; i < RATES; i++)
-        for (t = 0; t < sizeof tones / sizeof tones[0]; t++)
+        for (t = 0; t < COUNT_OF(tones); t++)
             if (tones[t] < rates[i].rate / 2u)
                 assert_true(deviation(convert_tone(rates[i].rate, tones[t], rates[i].rate / 10u), 0, 0) < 7071 * 0.01);
 }
@@ -97,7 +97,7 @@ TEST(samples_come_when_their_time_is_known)
     for (i = 0; i < RATES; i++) {
         const uint64_t rate = rates[i].rate;
         uint64_t made = 0;
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
         assert_int_equal(convert.reach, rates[i].reach);
         for (n = 0; n < 30000u; n++) {
             const uint64_t known = n < rates[i].reach ? 0 : n + 1u - rates[i].reach; /* samples with all that follows */
@@ -111,7 +111,7 @@ TEST(samples_come_when_their_time_is_known)
 TEST(no_sum_overflows)
 {
     unsigned i, distance, k;
-    for (i = 0; i < sizeof conversions / sizeof conversions[0]; i++) {
+    for (i = 0; i < COUNT_OF(conversions); i++) {
         const unsigned spacing = conversions[i].spacing;
         for (distance = 0; distance <= spacing; distance++) {
             int32_t sum = 0, magnitude = 0;
@@ -132,8 +132,8 @@ TEST(a_constant_stays_one_from_its_first_sample_on)
     static const int32_t levels[] = { 9830, -12000, 32767, -32768, 1 };
     unsigned i, n, k, l, made = 0;
     for (i = 0; i < RATES; i++) {
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
-        for (l = 0; l < sizeof levels / sizeof levels[0]; l++) {
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
+        for (l = 0; l < COUNT_OF(levels); l++) {
             labial_hear_convert_reset(&convert);
             for (n = 0; n < 2000u; n++) {
                 const unsigned count = labial_hear_convert(&convert, levels[l], out);
@@ -154,7 +154,7 @@ TEST(full_scale_is_held)
     unsigned i, n, k, most = 0, least = 0;
     for (i = 0; i < RATES; i++) {
         int last = 0;
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
         for (n = 0; n < 20000u; n++) {
             const unsigned level = n / 50u % 2u, count = labial_hear_convert(&convert, levels[level], out);
             for (k = 0; k < count; k++) {
@@ -405,7 +405,7 @@ TEST(silence_and_constants_have_the_least_features)
 {
     static const int16_t constants[] = { 0, 1, -1, 8520, 32767, -32768 };
     unsigned i, k, b;
-    for (i = 0; i < sizeof constants / sizeof constants[0]; i++) {
+    for (i = 0; i < COUNT_OF(constants); i++) {
         int16_t window[WINDOW], features[BANDS];
         for (k = 0; k < WINDOW; k++)
             window[k] = constants[i];

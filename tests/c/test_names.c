@@ -34,9 +34,9 @@ static const struct {
 
 static const char *const labels[] = { "sil", "AA", "AA1", "AE", "B", "a", "a\xca\x8a", "\xca\x83", "_:", "A" };
 
-#define COUNT (sizeof entries / sizeof entries[0])
+#define COUNT COUNT_OF(entries)
 
-static labial_names_t names = { 0, sizeof labels / sizeof labels[0], NULL, labels };
+static labial_names_t names = { 0, COUNT_OF(labels), NULL, labels };
 
 /* Packs the first `count` names at the very end of a heap block. */
 static uint8_t *pack(labial_names_t *packed, unsigned count)
@@ -135,7 +135,7 @@ TEST(unknown_names_are_refused)
         "AAA", "0",    "ZZ",   "b",    "AB",       "AAx", "Zzzzzzzzzzzzzzzzzzzzzzzzzzzz",
         "si",  "sill", "\xff", "\xca", "\xca\x8a", "x1",  "1AA"
     };
-    for (unsigned i = 0; i < sizeof unknown / sizeof unknown[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(unknown); i++)
         if (find(unknown[i]) != LABIAL_ERROR_NAME)
             fail_msg("%s is %d", unknown[i], find(unknown[i]));
 }
@@ -169,7 +169,7 @@ TEST(marks_alone_are_unknown)
     static const char *const marks[] = { "\xcb\x88", "\xcb\x8c", "\xcb\x90",         "\xcb\x88\xcb\x90",
                                          "\xcb",     "\x88",     "\xcb\x88\xcb\x88", "1",
                                          "00",       "\x90",     "\xcb\x88\x31" };
-    for (unsigned i = 0; i < sizeof marks / sizeof marks[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(marks); i++)
         if (find(marks[i]) != LABIAL_ERROR_NAME)
             fail_msg("mark %u is %d", i, find(marks[i]));
     assert_int_equal(find("AA\xcb"), LABIAL_ERROR_NAME);
@@ -199,7 +199,7 @@ static int find_nearest(const char *name)
 TEST(every_label_has_a_nearest_phoneme)
 {
     static const uint8_t empty[] = { 9, ANY, 4, 1 | ANY, 'B' }; /* a name of no characters is none */
-    const labial_names_t odd = { sizeof empty, sizeof labels / sizeof labels[0], empty, labels };
+    const labial_names_t odd = { sizeof empty, COUNT_OF(labels), empty, labels };
     char longer[300];
     assert_int_equal(find_nearest("AA1"), 2);
     assert_int_equal(find_nearest("AAX"), 1);
@@ -316,7 +316,7 @@ static const int codes[] = {
     LABIAL_ERROR_WORD,   LABIAL_ERROR_RANGE,   LABIAL_ERROR_PACKET
 };
 
-#define CODES (sizeof codes / sizeof codes[0])
+#define CODES COUNT_OF(codes)
 
 /* Would catch a renumbering, which breaks programs linked against an older library. */
 TEST(zero_is_success_and_errors_are_negative)
@@ -348,7 +348,7 @@ TEST(every_code_has_its_own_text)
 TEST(other_numbers_are_unknown)
 {
     static const int others[] = { 6, 7, 8, 255, -18, -19, 1000, -1000, INT_MAX, INT_MIN, INT_MIN + 1 };
-    for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(others); i++)
         assert_string_equal(labial_result_text(others[i]), UNKNOWN);
 }
 

@@ -30,7 +30,7 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int16_t fa
     int16_t faps[LABIAL_CHANNELS] = { 0 };
     int32_t value[2] = { last, -77 };
     faps[FAP3] = fap3;
-    assert_int_equal(labial_rig_apply(&rig, faps, value), LABIAL_OK);
+    assert_ok(labial_rig_apply(&rig, faps, value));
     assert_int_equal(value[1], -77); /* nothing beyond the rig's outputs is written */
     return value[0];
 }
@@ -55,7 +55,7 @@ TEST(rest_is_neutral_within_limits)
     outputs[0] = outputs[1] = outputs[2] = plain();
     outputs[1].neutral = 900;
     outputs[2].neutral = 2100;
-    assert_int_equal(labial_rig_rest(&rig, values), LABIAL_OK);
+    assert_ok(labial_rig_rest(&rig, values));
     assert_int_equal(values[0], 1500);
     assert_int_equal(values[1], 1000);
     assert_int_equal(values[2], 2000);
@@ -120,14 +120,14 @@ TEST(jaw_macro_closes_and_opens)
         { 0, -300, 1650 }, { 90, -390, 1650 }, { 200, 0, 1400 },  { -32768, -32768, 1900 },
         { 0, -72, 1400 },  { 20, -92, 1400 },  { 0, -136, 1513 }, { 0, -104, 1443 },
     };
-    for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(poses); i++) {
         const labial_rig_output_t both[2] = { up, down };
         const labial_rig_t rig = { both, 2 };
         int16_t faps[LABIAL_CHANNELS] = { 500, 1, 2, 0, 0, 3, 4, 5, 6, 7, 8, 9, 10 }; /* others must not matter */
         int32_t values[2] = { 1400, 1900 };
         faps[FAP51] = poses[i].top;
         faps[FAP52] = poses[i].bottom;
-        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        assert_ok(labial_rig_check(&rig));
         labial_rig_apply(&rig, faps, values);
         assert_in_range(values[0] - poses[i].up + 1, 0, 2);
         assert_in_range(values[1] + values[0] - 3300 + 1, 0, 2);
@@ -162,8 +162,8 @@ TEST(contact_closes)
     output.contact = 1;
     output.closed = 1450;
     output.maximum = 2000;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-    for (unsigned i = 0; i < sizeof poses / sizeof poses[0]; i++) {
+    assert_ok(labial_rig_check(&rig));
+    for (unsigned i = 0; i < COUNT_OF(poses); i++) {
         int16_t faps[LABIAL_CHANNELS] = { 0 };
         int32_t value = 1500, wanted = poses[i].value;
         faps[FAP51] = poses[i].top;
@@ -176,7 +176,7 @@ TEST(contact_closes)
     }
     {
         int32_t value;
-        assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
+        assert_ok(labial_rig_rest(&rig, &value));
         assert_int_equal(value, 1450);
     }
 }
@@ -200,7 +200,7 @@ TEST(looking_ahead_closes_in_time)
         static const int32_t wanted[12] = { 1440, 1480, 1520, 1560, 1560, 1520, 1480, 1440, 1400, 1440, 1480, 1520 };
         const int32_t last = seeing;
         labial_rig_apply(&rig, frames[i], &blind);
-        assert_int_equal(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(12 - i), &seeing, NULL), LABIAL_OK);
+        assert_ok(labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(12 - i), &seeing, NULL));
         assert_int_equal(seeing, wanted[i]);
         assert_true(seeing - last <= 40 && last - seeing <= 40);
         if (i == 8)
@@ -285,7 +285,7 @@ TEST(sight_is_32_frames)
     for (unsigned t = 0; t < CLOSES; t++)
         frames[t][FAP52] = -272;
     for (unsigned t = 0; t <= CLOSES; t++) {
-        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        assert_ok(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change));
         if (t + LABIAL_RIG_SIGHT == CLOSES)
             assert_int_equal(value, 2720); /* nothing is seen of it yet */
     }
@@ -294,7 +294,7 @@ TEST(sight_is_32_frames)
     for (unsigned t = 0; t < CLOSES; t++)
         frames[t][FAP52] = -3000;
     for (unsigned t = 0; t < CLOSES - LABIAL_RIG_SIGHT; t++) {
-        assert_int_equal(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change), LABIAL_OK);
+        assert_ok(labial_rig_apply_ahead(&rig, frames[t], LABIAL_RIG_SIGHT, &value, &change));
         most = change > most ? change : most;
     }
     assert_int_equal(most, FASTEST);
@@ -313,7 +313,7 @@ TEST(acceleration_comes_to_rest)
     output.contact = 1;
     output.slew = 60;
     output.acceleration = 20;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    assert_ok(labial_rig_check(&rig));
     for (unsigned i = 0; i < 24; i++)
         frames[i][FAP52] = i < 8 ? -200 : 0;
     for (unsigned sight = 1; sight <= 24; sight++) {
@@ -321,9 +321,8 @@ TEST(acceleration_comes_to_rest)
         for (unsigned i = 0; i < 24; i++) {
             const int32_t last = value, before = change;
             const unsigned left = 24u - i;
-            assert_int_equal(
-                labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(sight < left ? sight : left), &value, &change),
-                LABIAL_OK);
+            assert_ok(
+                labial_rig_apply_ahead(&rig, frames[i], (uint16_t)(sight < left ? sight : left), &value, &change));
             assert_int_equal(change, value - last);
             assert_true(change <= 60 && change >= -60 && change - before <= 20 && before - change <= 20);
             assert_true(value >= 1400 && value <= 1600);
@@ -357,7 +356,7 @@ TEST(acceleration_holds_for_all)
         output.acceleration += !output.acceleration;
         output.contact = (uint8_t)(chance() % 2u);
         output.closed = output.contact ? between(output.minimum, output.maximum) : 0;
-        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+        assert_ok(labial_rig_check(&rig));
         for (unsigned i = 0; i < 40; i++)
             for (unsigned frame = 0; frame < LABIAL_CHANNELS; frame++)
                 frames[i][frame] = (int16_t)between(-400, 400);
@@ -405,7 +404,7 @@ TEST(delayed_frames_look_ahead)
     }
     assert_int_equal(shown, 30);
     delay.held = 999; /* by a fault */
-    assert_int_equal(labial_rig_delayed(&rig, &delay, frames[0], values, changes), LABIAL_OK);
+    assert_ok(labial_rig_delayed(&rig, &delay, frames[0], values, changes));
     assert_int_equal(delay.held, 5);
     assert_int_equal(labial_rig_delayed(NULL, &delay, frames[0], values, changes), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_delayed(&rig, NULL, frames[0], values, changes), LABIAL_ERROR_NULL);
@@ -488,10 +487,10 @@ TEST(sounds_ahead_equal_faps_ahead)
             frames[i][FAP3] = shares[i][LABIAL_VISEME_TH] = i > 3 && i < 10 ? 100 : 0;
         for (unsigned i = 0; i < 20; i++) {
             const uint16_t left = (uint16_t)(20 - i);
-            assert_int_equal(labial_rig_apply_ahead(&faps, frames[i], left, &values[0], &changes[0]), LABIAL_OK);
+            assert_ok(labial_rig_apply_ahead(&faps, frames[i], left, &values[0], &changes[0]));
             const int result =
                 labial_rig_apply_visemes_ahead(&sounds, still[i], shares[i], left, &values[1], &changes[1]);
-            assert_int_equal(result, LABIAL_OK);
+            assert_ok(result);
             assert_int_equal(values[0], values[1]);
             most = values[1] > most ? values[1] : most;
         }
@@ -582,9 +581,9 @@ TEST(sounds_add_to_the_faps)
     const labial_rig_t rig = { &output, 1 };
     int32_t value = 0;
     output.visemes = amounts;
-    assert_int_equal(labial_rig_apply_visemes(&rig, faps, shares, &value), LABIAL_OK);
+    assert_ok(labial_rig_apply_visemes(&rig, faps, shares, &value));
     assert_int_equal(value, 1800);
-    assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, &value), LABIAL_OK);
+    assert_ok(labial_rig_apply_visemes(&rig, faps, NULL, &value));
     assert_int_equal(value, 1600);
     shares[LABIAL_VISEME_PP] = LABIAL_VISEME_ONE;
     labial_rig_apply_visemes(&rig, faps, shares, &value);
@@ -614,8 +613,8 @@ TEST(random_rigs_equal_double)
         for (unsigned i = 0; i < LABIAL_VISEMES; i++)
             amounts[i] = (int16_t)between(round % 3u ? -1000 : INT16_MIN, round % 3u ? 1000 : INT16_MAX);
         output.visemes = chance() % 2u ? amounts : NULL;
-        assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-        assert_int_equal(labial_rig_rest(&rig, &value), LABIAL_OK);
+        assert_ok(labial_rig_check(&rig));
+        assert_ok(labial_rig_rest(&rig, &value));
         for (unsigned frame = 0; frame < 12; frame++) {
             int16_t faps[LABIAL_CHANNELS];
             const int32_t last = value;
@@ -626,7 +625,7 @@ TEST(random_rigs_equal_double)
                 shares[i] = (uint8_t)chance();
             const uint8_t *const known = frame % 3u ? shares : NULL;
             const double wanted = expected(&output, faps, known, last);
-            assert_int_equal(labial_rig_apply_visemes(&rig, faps, known, &value), LABIAL_OK);
+            assert_ok(labial_rig_apply_visemes(&rig, faps, known, &value));
             if (fabs(wanted - value) > 1.0)
                 fail_msg("rig %u, frame %u: %ld instead of %.1f", round, frame, (long)value, wanted);
             off += wanted < value || wanted > value;
@@ -662,9 +661,9 @@ TEST(unchecked_tables_stay_defined)
         values[0] = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
         values[1] = -77;
         sound += labial_rig_check(&rig) == LABIAL_OK;
-        assert_int_equal(labial_rig_apply(&rig, faps, values), LABIAL_OK);
-        assert_int_equal(labial_rig_apply_ahead(&rig, faps, 1, values, changes), LABIAL_OK);
-        assert_int_equal(labial_rig_rest(&rig, values), LABIAL_OK);
+        assert_ok(labial_rig_apply(&rig, faps, values));
+        assert_ok(labial_rig_apply_ahead(&rig, faps, 1, values, changes));
+        assert_ok(labial_rig_rest(&rig, values));
         assert_int_equal(values[1], -77);
         assert_int_equal(changes[1], -77);
     }
@@ -711,7 +710,7 @@ TEST(check_names_every_fault)
         /* Behind a sound output, so that a check of the first alone would show. */
         const labial_rig_output_t outputs[2] = { good, bad[i] };
         const labial_rig_t rig = { outputs, 2 }, first = { outputs, 1 };
-        assert_int_equal(labial_rig_check(&first), LABIAL_OK);
+        assert_ok(labial_rig_check(&first));
         if (labial_rig_check(&rig) != LABIAL_ERROR_RIG)
             fail_msg("fault %u was not found", i);
     }
@@ -735,9 +734,9 @@ TEST(check_accepts_the_very_limits)
     output.minimum = -LABIAL_RIG_VALUE_MAX;
     output.maximum = output.slew = output.closed = output.deadband = output.acceleration = LABIAL_RIG_VALUE_MAX;
     output.invert = output.contact = 1;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    assert_ok(labial_rig_check(&rig));
     output.minimum = output.maximum;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
+    assert_ok(labial_rig_check(&rig));
 }
 
 TEST(null_and_empty_are_refused)
@@ -759,7 +758,7 @@ TEST(null_and_empty_are_refused)
     assert_int_equal(labial_rig_apply(&rig, NULL, &value), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply(&rig, faps, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_visemes(&rig, faps, NULL, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_rig_apply(&empty, faps, &value), LABIAL_OK);
+    assert_ok(labial_rig_apply(&empty, faps, &value));
     assert_int_equal(labial_rig_apply_ahead(NULL, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&hollow, faps, 1, &value, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_rig_apply_ahead(&rig, NULL, 1, &value, NULL), LABIAL_ERROR_NULL);

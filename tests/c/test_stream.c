@@ -62,7 +62,7 @@ TEST(frames_do_not_depend_on_where_the_structure_lies)
     const labial_model_t *model = &rich.model;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 5);
     run(&wanted, model, COUNT, FIXTURE_CHANCE);
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, &model, 1));
     host.moving = 1;
     assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_CHANCE));
     assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
@@ -83,9 +83,8 @@ TEST(frames_do_not_depend_on_what_memory_held)
     host.recorder.next = 0;
     host.ended = 0;
     host.on_way = 0;
-    assert_int_equal(labial_init(host.stream, &rich.model, host.workspace, size, fixture_record, &host.recorder),
-                     LABIAL_OK);
-    assert_int_equal(labial_exact(host.stream, 1), LABIAL_OK);
+    assert_ok(labial_init(host.stream, &rich.model, host.workspace, size, fixture_record, &host.recorder));
+    assert_ok(labial_exact(host.stream, 1));
     assert_played(&host, fixture_play(&host, input, 40, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&wanted.recorder, &host.recorder), -1);
     fixture_close(&wanted);
@@ -110,14 +109,14 @@ TEST(two_streams_do_not_disturb_each_other)
     fixture_stream(other, COUNT, FIXTURE_PAUSES, 12);
     for (unsigned i = 0; i < 2; i++) {
         assert_played(&alone[i], fixture_run(&alone[i], models[i], inputs[i], COUNT, FIXTURE_FILL));
-        assert_int_equal(fixture_open(&together[i], &models[i], 1), LABIAL_OK);
+        assert_ok(fixture_open(&together[i], &models[i], 1));
     }
     while (!done[0] || !done[1]) {
         assert_true(rounds++ < 200000);
         for (unsigned i = 0; i < 2; i++) {
             fixture_host_t *host = &together[i];
             if (next[i] < COUNT && labial_room(host->stream) > 0)
-                assert_int_equal(fixture_push(host, &inputs[i][next[i]++]), LABIAL_OK);
+                assert_ok(fixture_push(host, &inputs[i][next[i]++]));
             if (next[i] == COUNT && !host->ended)
                 fixture_end(host);
             done[i] = fixture_tick(host) == LABIAL_DONE;
@@ -136,7 +135,7 @@ TEST(a_stream_without_phonemes_is_done_at_once)
 {
     fixture_host_t host;
     const labial_model_t *model = &plain.model;
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, &model, 1));
     assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
     fixture_end(&host);
     assert_int_equal(fixture_tick(&host), LABIAL_DONE);

@@ -24,10 +24,10 @@ static void begin(fixture_host_t *host, unsigned rate, size_t frames)
     const labial_model_t *model = &rich.model;
     unsigned guard = 0;
     rich.model.frames_per_second = (uint16_t)rate;
-    assert_int_equal(fixture_open(host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(host, &model, 1));
     fixture_stream(input, 80, FIXTURE_VOWELS, 23);
     for (unsigned i = 0; i < 80 && labial_room(host->stream) > 0; i++)
-        assert_int_equal(fixture_push(host, &input[i]), LABIAL_OK);
+        assert_ok(fixture_push(host, &input[i]));
     while (host->recorder.count < frames) {
         assert_true(guard++ < 1000);
         (void)fixture_tick(host);
@@ -43,7 +43,7 @@ static size_t drain(fixture_host_t *host)
         result = fixture_tick(host);
         if (result == LABIAL_DONE)
             break;
-        assert_int_equal(result, LABIAL_OK);
+        assert_ok(result);
         assert_true(host->recorder.count - before <= 1000);
     }
     if (host->complaint)
@@ -86,7 +86,7 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
         { 250, 3997, 1000 },
         { 250, 3996, 999 },
     };
-    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(cases); i++) {
         fixture_host_t host;
         begin(&host, cases[i].rate, 30);
         fixture_cancel(&host, cases[i].ms);
@@ -103,7 +103,7 @@ TEST(easing_is_monotonic_and_even)
 {
     static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
     unsigned moved = 0;
-    for (unsigned i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(lengths); i++) {
         const int n = (int)lengths[i];
         fixture_host_t host;
         begin(&host, FIXTURE_RATE, 40 + i);
@@ -206,14 +206,14 @@ static const labial_model_t *models[1];
 /* Plays `count` phonemes on a stream that is told `percent` before them. */
 static void play_at(fixture_host_t *host, unsigned percent, size_t count)
 {
-    assert_int_equal(labial_articulation(host->stream, percent), LABIAL_OK);
+    assert_ok(labial_articulation(host->stream, percent));
     assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
 }
 
 static void open_at(fixture_host_t *host, unsigned percent, size_t count)
 {
     models[0] = &rich.model;
-    assert_int_equal(fixture_open(host, models, 1), LABIAL_OK);
+    assert_ok(fixture_open(host, models, 1));
     play_at(host, percent, count);
 }
 
@@ -231,10 +231,9 @@ TEST(the_first_is_100_and_none_is_0)
     for (size_t t = 0; t < silent.recorder.count; t++)
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             assert_int_equal(silent.recorder.frames[t][c], 0);
-    assert_int_equal(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]),
-                                 fixture_record, &silent.recorder),
-                     LABIAL_OK);
-    assert_int_equal(labial_exact(silent.stream, 1), LABIAL_OK);
+    assert_ok(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]), fixture_record,
+                          &silent.recorder));
+    assert_ok(labial_exact(silent.stream, 1));
     silent.ended = 0;
     silent.recorder.next = 0;
     silent.recorder.count = silent.begun = 0;
@@ -253,7 +252,7 @@ TEST(more_than_the_most_is_the_most)
     fixture_host_t most, host;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 4);
     open_at(&most, LABIAL_ARTICULATION_MAX, COUNT);
-    for (unsigned i = 0; i < sizeof more / sizeof more[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(more); i++) {
         open_at(&host, more[i], COUNT);
         assert_int_equal(fixture_difference(&most.recorder, &host.recorder), -1);
         fixture_close(&host);
@@ -280,14 +279,14 @@ TEST(cancel_and_restart_keep_it)
         open_at(&host, way == 0 ? 60 : 170, 0);
         fixture_cancel(&host, 20);
         if (way == 1)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         while (fixture_tick(&host) != LABIAL_DONE)
             ;
         if (way == 2)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         fixture_restart(&host);
         if (way == 3)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_FILL));
         assert_int_equal(fixture_difference(&ever.recorder, &host.recorder), -1);
         fixture_close(&host);

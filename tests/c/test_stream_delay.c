@@ -32,7 +32,7 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
     size_t pushed = 0, taken = 0, moved = 0; /* ticks that took a frame or, after the end, let them run out */
     uint32_t quiet = 0;
     int wanted = LABIAL_OK, got;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     while (wanted != LABIAL_DONE) {
         uint32_t burst = quiet > 0 ? 0 : 1 + fixture_below(&random, 6);
         int is_moving;
@@ -119,9 +119,9 @@ TEST(an_hour_of_silence_is_played_as_it_comes)
     const size_t hour = LABIAL_DURATION_MAX / 1000 * FIXTURE_RATE;
     fixture_host_t host;
     size_t i;
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_OK); /* 5 frames */
-    assert_int_equal(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX), LABIAL_OK);
+    assert_ok(fixture_open(&host, &model, 1));
+    assert_ok(labial_push(host.stream, FIXTURE_A, 100)); /* 5 frames */
+    assert_ok(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX));
     for (i = 0; i < LABIAL_DELAY(FIXTURE_STRIDE); i++)
         assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
 #if LABIAL_REACH >= 4

@@ -58,7 +58,7 @@ static void judge(const fixture_recorder_t *recorder, size_t first, size_t count
 static void compare(unsigned model_count, size_t count, const char *what, unsigned seed)
 {
     fixture_host_t host;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     host.random.state = seed + 1;
     if (fixture_play(&host, input, count, seed % 2 ? FIXTURE_FILL : FIXTURE_CHANCE) != 0)
         fail_msg("%s: %s", what, host.complaint);
@@ -123,7 +123,7 @@ TEST(channels_follow_those_of_the_same_frame)
         const uint8_t own = f->model.search_stride;
         f->model.search_stride = (uint8_t)stride;
         models[0] = &f->model;
-        for (unsigned k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        for (unsigned k = 0; k < COUNT_OF(kinds); k++) {
             fixture_stream(input, COUNT, kinds[k], stride);
             compare(1, COUNT, "followers", stride);
         }
@@ -174,7 +174,7 @@ TEST(rounds_are_the_sum_of_their_steps)
     fixture_host_t host;
     double held[LABIAL_CHANNELS];
     models[0] = &rich.model;
-    assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, 1));
     for (unsigned round = 0; round < FIXTURE_ROUNDS(40); round++) {
         const size_t first = host.recorder.count, count = round % 7 * 4 + 1;
         fixture_stream(input, count, round % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, round);
@@ -214,7 +214,7 @@ static void tell_by_chance(uint32_t seed)
 static void compare_told(unsigned model_count, double tolerance, const char *what, unsigned seed)
 {
     fixture_host_t host;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     tell_by_chance(seed + 1);
     if (fixture_play_told(&host, input, ARTICULATED, told, MAX_TOLD) != 0)
         fail_msg("%s, seed %u: %s", what, seed, host.complaint);

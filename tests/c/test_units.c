@@ -130,18 +130,18 @@ TEST(pauses_are_cut_in_two)
     begin(&rich.model);
     push(FIXTURE_A, 0, 1), push(FIXTURE_SIL, 0, 10);
     expect_next(FIXTURE_A, 20, FIXTURE_SIL, FIXTURE_SIL);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_ok(labial_units_take(&units, models, 0, &taken));
     expect_next(FIXTURE_SIL, 200 - 120, FIXTURE_A, FIXTURE_SIL);
     for (i = 0; i < 4; i++) {
         assert_int_equal(labial_units_left(&units, models) == 0, i == 0);
-        assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 0, &taken));
         assert_int_equal(taken.is_first, i == 0);
         assert_int_equal(labial_units_next(&units, models, 0, &spoken), 0); /* what ends the pause is not known */
     }
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
     push(FIXTURE_S, 0, 1);
     expect_next(FIXTURE_SIL, 120, FIXTURE_SIL, FIXTURE_S);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK); /* sees 6 ahead, S is the sixth */
+    assert_ok(labial_units_take(&units, models, 0, &taken)); /* sees 6 ahead, S is the sixth */
     assert_int_equal(taken.is_first, 1);
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
     assert_string_equal(take_all(1, LABIAL_DONE), "000004.|");
@@ -152,7 +152,7 @@ TEST(pauses_are_cut_in_two)
     assert_int_equal(labial_units_push(&units, FIXTURE_SIL, 0, LABIAL_DURATION_MAX, FIXTURE_RATE), 180000);
     expect_next(FIXTURE_SIL, 65535 - 120, FIXTURE_SIL, FIXTURE_SIL);
     for (i = 0; i < 180000 - 6; i++)
-        assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 0, &taken));
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
 #else
     (void)taken;
@@ -174,8 +174,8 @@ TEST(pauses_are_cut_where_one_frame_is_seen)
     near.floor_count = 0;
     begin(&near);
     push(FIXTURE_SIL, 0, 3);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK); /* the head, whatever ends the pause */
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_ok(labial_units_take(&units, models, 0, &taken)); /* the head, whatever ends the pause */
+    assert_ok(labial_units_take(&units, models, 0, &taken));
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
 #endif
 }
@@ -185,7 +185,7 @@ static void expect_places(const unsigned *shares, const char *wanted_open, size_
 {
     labial_taken_t taken;
     for (size_t i = 0; i < count; i++) {
-        assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 1, &taken));
         if (shares)
             assert_int_equal(taken.share, shares[i] * 4);
         assert_int_equal(taken.is_open, wanted_open[i] == 'o');
@@ -224,27 +224,27 @@ TEST(pauses_come_to_rest)
     push(FIXTURE_SIL, 0, 3), push(FIXTURE_A, 0, 2), push(FIXTURE_SIL, 0, 20);
     expect_places(NULL, "-----", 5);
     for (i = 1; i <= 17; i++) {
-        assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 0, &taken));
         assert_int_equal(taken.rest, i < 16 ? i : 16);
     }
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
     for (i = 0; i < 3; i++) { /* nothing follows: it rests on */
-        assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 1, &taken));
         assert_int_equal(taken.rest, 16);
     }
     assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_DONE);
     begin(&floored);
     push(FIXTURE_SIL, 0, 20), push(FIXTURE_A, 0, 2); /* which the last frames lead to */
     for (i = 1; i <= 20; i++) {
-        assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+        assert_ok(labial_units_take(&units, models, 1, &taken));
         assert_int_equal(taken.rest, i > 17 ? 0 : 16); /* nothing leads to where it rests */
     }
     begin(&floored);
     push(FIXTURE_A, 0, 2), push(FIXTURE_P, 0, 2);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK); /* sees three frames behind it */
+    assert_ok(labial_units_take(&units, models, 0, &taken)); /* sees three frames behind it */
     assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_STARVED);
     push(FIXTURE_O, 0, 1);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_ok(labial_units_take(&units, models, 0, &taken));
     assert_int_equal(taken.labels[1], FIXTURE_P);
     assert_int_equal(taken.labels[2], FIXTURE_P);
     assert_int_equal(taken.labels[3], FIXTURE_O);
@@ -412,9 +412,9 @@ TEST(the_queue_knows_its_models)
     assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
     for (unsigned slot = 1; slot < LABIAL_MODELS; slot++)
         assert_int_equal(labial_units_uses(&units, slot, units.frames), 0);
-    assert_int_equal(labial_units_take(&units, models, 0, &taken), LABIAL_OK);
+    assert_ok(labial_units_take(&units, models, 0, &taken));
     assert_int_equal(labial_units_uses(&units, 0, units.frames), 1);
-    assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+    assert_ok(labial_units_take(&units, models, 1, &taken));
     assert_int_equal(labial_units_uses(&units, 0, units.frames), 0);
 }
 
@@ -426,12 +426,12 @@ TEST(shares_of_the_longest_phoneme_ascend)
     labial_model_t fast = plain.model;
     labial_taken_t taken;
     fast.frames_per_second = 250;
-    for (unsigned i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(lengths); i++) {
         begin(&fast);
         assert_int_equal(labial_units_push(&units, FIXTURE_S, 0, lengths[i] * 4u, 250), lengths[i]);
         for (uint32_t n = 0; n < lengths[i]; n++) {
             const double exact = 16384.0 * (n + 0.5) / lengths[i];
-            assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_OK);
+            assert_ok(labial_units_take(&units, models, 1, &taken));
             if (taken.share > exact + 1.6 || taken.share < exact - 1.6) /* to halving, 1 in 32,768 */
                 fail_msg("frame %u of %u: share %u, not %g", n, lengths[i], taken.share, exact);
         }

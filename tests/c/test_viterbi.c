@@ -236,7 +236,7 @@ TEST(the_window_lies_around_the_nearest_state)
         emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
         enter_from(q, q, 0);
     }
-    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(cases); i++) {
         labial_search_t search;
         labial_viterbi_step(&model, &channel, cases[i].position, LABIAL_BEGINS, &search);
         if (search.first != cases[i].first || oracle_window(&model, &channel, cases[i].position) != cases[i].first)
@@ -255,7 +255,7 @@ TEST(a_leap_is_taken_where_no_edge_is_cheaper)
         unsigned score, from;
     } cases[] = { { 3, 6, 1 }, { 244, 247, 1 }, { 245, 248, 0 }, { 246, 248, 0 }, { 255, 248, 0 } };
     unsigned i;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (i = 0; i < COUNT_OF(cases); i++) {
         labial_search_t search;
         set_up_flat(2, 1);
         initials[1] = 10;
