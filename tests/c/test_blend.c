@@ -276,37 +276,6 @@ TEST(extremes_stay_between)
     }
 }
 
-/* Would catch a jump where a limit is passed. The blend may move as far as the faster of its inputs and, while the lips
- * pass from held to free, by what that lets in: the steepest of 3 x^2 - 2 x^3 is 1.5. */
-TEST(continuous)
-{
-    int16_t speech[2][LABIAL_CHANNELS], laugh[2][LABIAL_CHANNELS], out[2][LABIAL_CHANNELS];
-    const labial_blend_t *blend = &labial_blend_default;
-    seed = fixture_seed(6);
-    for (int i = 0; i < 50000; i++) {
-        const unsigned intensity = (unsigned)draw(0, 256), words = (unsigned)(i % 2 ? 256 : draw(0, 256));
-        draw_speech(speech[0], draw(80, 280), draw(110, 310));
-        draw_frame(laugh[0], 300);
-        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-            speech[1][c] = (int16_t)(speech[0][c] + draw(-6, 6));
-            laugh[1][c] = (int16_t)(laugh[0][c] + draw(-6, 6));
-        }
-        for (int k = 0; k < 2; k++)
-            assert_ok(labial_blend(blend, intensity, words, speech[k], laugh[k], out[k]));
-        const double opened = fabs(speech[1][UPPER] + speech[1][LOWER] - speech[0][UPPER] - (double)speech[0][LOWER]);
-        const double dropped = fabs(speech[1][LOWER] - (double)speech[0][LOWER]);
-        const double let_in =
-            fmax(opened / (blend->open - blend->closed), dropped / (blend->dropped - blend->touching)) * 1.5;
-        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-            const double by_speech = fabs(speech[1][c] - (double)speech[0][c]);
-            const double by_laugh = fabs(laugh[1][c] - (double)laugh[0][c]);
-            const double way = fmax(fabs(laugh[0][c] - (double)speech[0][c]), fabs(laugh[1][c] - (double)speech[1][c]));
-            const double most = fmax(by_speech, by_laugh) + let_in * way * blend->shares[c] / 256.0 + 2.0;
-            assert_true(fabs(out[1][c] - (double)out[0][c]) <= most);
-        }
-    }
-}
-
 TEST(in_place_and_beyond_full)
 {
     int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], same[LABIAL_CHANNELS];

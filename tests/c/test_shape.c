@@ -350,21 +350,6 @@ TEST(tables_are_interpolated)
         }
 }
 
-/* A case by hand: 16 intervals of 10 FAP units from -80 on, which rise by 20 each. */
-TEST(a_table_by_hand)
-{
-    table.low = -80 * 16;
-    table.gain = 3277; /* 2^24 / (2 * 160 * 16) */
-    for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
-        table.values[i] = (int16_t)(i * 20 * 16);
-    assert_int_equal(labial_protrusion(&table, 2 * -200 * 16), 0);
-    assert_int_equal(labial_protrusion(&table, 2 * -80 * 16), 0);
-    assert_in_range(labial_protrusion(&table, 2 * -75 * 16), 10 * 16 - 2, 10 * 16 + 2);
-    assert_in_range(labial_protrusion(&table, (10 - 10) * 16), 160 * 16 - 2, 160 * 16 + 2);
-    assert_int_equal(labial_protrusion(&table, 2 * 80 * 16), 320 * 16);
-    assert_int_equal(labial_protrusion(&table, 2 * 2000 * 16), 320 * 16);
-}
-
 /* Would catch channels that end up in the place of others, a spacing that is not kept, corners of another channel. */
 TEST(frames_are_made_of_their_sources)
 {

@@ -29,32 +29,6 @@ static void run(fixture_host_t *host, const labial_model_t *model, size_t count,
         fail_msg("feed %d: %s (frame %zu)", (int)feed, host->complaint, host->recorder.count);
 }
 
-/* Would catch a frame that depends on what happens to be in the queue, and a stall on any kind of input. */
-TEST(frames_do_not_depend_on_the_feeding)
-{
-    const labial_model_t *models[2];
-    models[0] = &plain.model;
-    models[1] = &rich.model;
-    for (unsigned m = 0; m < 2; m++) {
-        for (int kind = 0; kind < FIXTURE_HOUR; kind++) {
-            fixture_host_t wanted;
-            fixture_stream(input, COUNT, (fixture_kind_t)kind, m);
-            run(&wanted, models[m], COUNT, FIXTURE_FILL);
-            if (kind != FIXTURE_ZERO && wanted.recorder.count == 0)
-                fail_msg("kind %d delivers nothing", kind);
-            for (int feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
-                fixture_host_t host;
-                run(&host, models[m], COUNT, (fixture_feed_t)feed);
-                const long at = fixture_difference(&wanted.recorder, &host.recorder);
-                if (at >= 0)
-                    fail_msg("model %u, kind %d, feed %d: frame %ld differs", m, kind, feed, at);
-                fixture_close(&host);
-            }
-            fixture_close(&wanted);
-        }
-    }
-}
-
 /* Would catch a pointer of the structure into itself. The old place is overwritten and freed. */
 TEST(frames_do_not_depend_on_where_the_structure_lies)
 {

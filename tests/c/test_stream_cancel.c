@@ -155,48 +155,6 @@ TEST(cancel_before_the_first_frame_stays_neutral)
     }
 }
 
-/* Plays input[0 .. count) on a host that was restarted. */
-static void play_again(fixture_host_t *host, size_t count)
-{
-    assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
-}
-
-TEST(a_cancelled_stream_is_taken_up_from_neutral)
-{
-    fixture_host_t host;
-    begin(&host, FIXTURE_RATE, 30);
-    fixture_cancel(&host, 200);
-    assert_int_equal(drain(&host), 10);
-    fixture_restart(&host);
-    const size_t first = host.recorder.count;
-    play_again(&host, 20);
-    assert_true(fixture_is_exact(host.recorder.count - first, fixture_duration(input, 20), FIXTURE_RATE));
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        if (abs(host.recorder.frames[first][c]) > 100) /* shapes are up to 500 from neutral */
-            fail_msg("channel %u begins at %d", c, host.recorder.frames[first][c]);
-    fixture_close(&host);
-}
-
-/* Would catch state that one round leaves behind for the next. */
-TEST(many_rounds)
-{
-    fixture_host_t host;
-    fixture_random_t random = { 5 };
-    begin(&host, FIXTURE_RATE, 10);
-    fixture_cancel(&host, 0);
-    (void)drain(&host);
-    for (unsigned round = 0; round < 60; round++) {
-        const size_t before = host.recorder.count;
-        const uint32_t count = fixture_below(&random, 60);
-        fixture_restart(&host);
-        assert_int_equal(labial_room(host.stream), LABIAL_QUEUE);
-        fixture_stream(input, 60, (fixture_kind_t)(round % FIXTURE_HOUR), round);
-        play_again(&host, count);
-        assert_true(fixture_is_exact(host.recorder.count - before, fixture_duration(input, count), FIXTURE_RATE));
-    }
-    fixture_close(&host);
-}
-
 /* ---- Articulation ------------------------------------------------------------------------------------------------ */
 
 #define COUNT 60

@@ -161,26 +161,6 @@ TEST(a_stream_begins_and_ends_at_rest)
     assert_true(opened >= FIXTURE_ROUNDS(10));
 }
 
-/* The motion that the first frames fade to is that of the oracle (test_stream_steps.c); here that they begin at rest,
- * also after labial_init() of a stream that stood open. */
-TEST(the_first_frames_lead_from_rest)
-{
-    static const int16_t rest[LABIAL_CHANNELS] = { 0 };
-    const fixture_phoneme_t vowel = { 400, FIXTURE_A, 0 };
-    open(&face, 1);
-    play(&face, &vowel, 1);
-    assert_true(farthest(face.faps[face.count - 1]) > 100);
-    assert_ok(labial_init(&face.stream, &rich.model, face.workspace, sizeof face.workspace, on_frame, &face));
-    face.count = 0;
-    play(&face, &vowel, 1);
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        assert_true(abs(face.faps[0][c]) <= abs(face.faps[FADE + 1][c]) / 20 + 2);
-    memcpy(&twin, &face, sizeof twin);
-    for (unsigned j = 1; j <= FADE; j++) /* the vowel hardly moves, so that its frames tell the way */
-        for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-            assert_true(abs(face.faps[j][c] - rest[c]) <= abs(face.faps[FADE + 1][c]) + 100);
-}
-
 /* "unless it is the neutral one already": to either side of it, in either direction. */
 TEST(a_face_at_rest_stays_where_it_is)
 {

@@ -163,35 +163,6 @@ static void play_all(fixture_host_t *host, unsigned model_count, size_t count, f
                  (unsigned long)fixture_duration(input, count));
 }
 
-/* Would catch frames lost or doubled where models meet, whatever the length of the runs: many are shorter than the
- * cross-fade, some one frame, some none. The frames must not depend on the feeding here either. */
-TEST(switching_keeps_time_and_does_not_depend_on_feeding)
-{
-    static const struct {
-        uint32_t longest, shortest_ms, range_ms;
-        const char *what;
-    } cases[] = {
-        { 12, 40, 200, "words" },    { 1, 0, 60, "single short phonemes" }, { 1, 20, 1, "single frames" },
-        { 3, 0, 400, "short runs" }, { 4, 0, 3, "less than a frame" },      { 2, 600, 3000, "pauses" },
-    };
-    for (unsigned i = 0; i < COUNT_OF(cases); i++) {
-        for (unsigned seed = 0; seed < FIXTURE_ROUNDS(4); seed++) {
-            fixture_host_t wanted;
-            alternate(2, cases[i].longest, cases[i].shortest_ms, cases[i].range_ms, seed);
-            play_all(&wanted, 2, TURNS, FIXTURE_FILL, cases[i].what);
-            for (int feed = FIXTURE_SINGLE; feed < FIXTURE_FEEDS; feed++) {
-                fixture_host_t host;
-                play_all(&host, 2, TURNS, (fixture_feed_t)feed, cases[i].what);
-                const long at = fixture_difference(&wanted.recorder, &host.recorder);
-                if (at >= 0)
-                    fail_msg("%s, feed %d: frame %ld differs", cases[i].what, feed, at);
-                fixture_close(&host);
-            }
-            fixture_close(&wanted);
-        }
-    }
-}
-
 /* A model makes room for another when its phonemes have been taken up and their frames are no longer needed: so it
  * must, in turn after turn, where the phonemes between them are many. */
 TEST(three_models_in_turn_make_room)

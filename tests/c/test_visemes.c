@@ -121,23 +121,6 @@ TEST_AFTER(begin, shares_follow_the_formula_however_phonemes_come)
     }
 }
 
-/* By hand: p between two vowels, three frames long. */
-TEST_AFTER(begin, a_short_closure_dominates)
-{
-    labial_exact(&stream, 1);
-    say(FIXTURE_SIL, 10, 0);
-    say(FIXTURE_A, 8, 0);
-    say(FIXTURE_P, 3, 0);
-    say(FIXTURE_A, 8, 0);
-    labial_end(&stream);
-    run();
-    assert_int_equal(found[19][LABIAL_VISEME_PP], 115); /* 2048 / (2048 + 640 - 40 * 10) of 128, rounded */
-    assert_int_equal(found[19][LABIAL_VISEME_AA], 13);
-    assert_int_equal(found[17][LABIAL_VISEME_PP], 79); /* a frame before it: 2048 - 20 * 51 = 1028 beside 640 */
-    assert_int_equal(found[15][LABIAL_VISEME_PP], 0);
-    assert_int_equal(found[14][LABIAL_VISEME_AA], LABIAL_VISEME_ONE);
-}
-
 /* After the last phoneme, and after a cancel, shares pass to silence in step with the face, and stay there. */
 TEST_AFTER(begin, a_face_at_rest_shows_silence)
 {
