@@ -205,6 +205,9 @@ typedef struct {
 int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count);
 void fixture_close(fixture_host_t *host);
 
+/* Initialises the stream anew where it lies, with an empty recorder. */
+int fixture_open_again(fixture_host_t *host);
+
 /* The calls of that name; what is expected of the ticks that follow depends on them. Each must succeed. */
 void fixture_end(fixture_host_t *host);
 void fixture_cancel(fixture_host_t *host, uint32_t milliseconds);

@@ -189,13 +189,7 @@ TEST(the_first_is_100_and_none_is_0)
     for (size_t t = 0; t < silent.recorder.count; t++)
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             assert_int_equal(silent.recorder.frames[t][c], 0);
-    assert_ok(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]), fixture_record,
-                          &silent.recorder));
-    assert_ok(labial_exact(silent.stream, 1));
-    silent.ended = 0;
-    silent.recorder.next = 0;
-    silent.recorder.count = silent.begun = 0;
-    silent.on_way = 0;
+    assert_ok(fixture_open_again(&silent));
     assert_played(&silent, fixture_play(&silent, input, COUNT, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&calm.recorder, &silent.recorder), -1);
     fixture_close(&silent);

@@ -293,17 +293,23 @@ TEST(an_end_while_the_face_rests)
 
 /* ---- Cancels and restarts on the way --------------------------------------------------------------------------------- */
 
+/* A stream of nine vowels that ended: their last frame was shown, and what leads to rest follows. */
+static void show_vowels(uint32_t seed)
+{
+    fixture_stream(input, 9, FIXTURE_VOWELS, seed);
+    open(&face, 0);
+    push(&face, input, 9);
+    (void)labial_end(&face.stream);
+    while (labial_latency(&face.stream).frames > 0)
+        (void)tick(&face);
+}
+
 /* Would catch a cancel that begins at another pose than the one that is shown, and one that takes another time. */
 TEST(a_cancel_begins_at_the_pose_on_the_way)
 {
     for (unsigned after = 0; after <= FRAMES; after++) {
         int16_t shown[LABIAL_CHANNELS];
-        fixture_stream(input, 9, FIXTURE_VOWELS, after);
-        open(&face, 0);
-        push(&face, input, 9);
-        (void)labial_end(&face.stream);
-        while (labial_latency(&face.stream).frames > 0)
-            (void)tick(&face);
+        show_vowels(after);
         for (unsigned i = 0; i < after; i++)
             (void)tick(&face);
         memcpy(shown, face.faps[face.count - 1], sizeof shown);
@@ -324,12 +330,7 @@ TEST(a_restart_on_the_way_goes_on)
         for (unsigned after = 0; after <= FRAMES; after++) {
             unsigned first, waited, length = cancelled ? 40u : FRAMES;
             int16_t from[LABIAL_CHANNELS];
-            fixture_stream(input, 9, FIXTURE_VOWELS, 7);
-            open(&face, 0);
-            push(&face, input, 9);
-            (void)labial_end(&face.stream);
-            while (labial_latency(&face.stream).frames > 0)
-                (void)tick(&face);
+            show_vowels(7);
             memcpy(from, face.faps[face.count - 1], sizeof from);
             assert_true(farthest(from) > 0);
             if (cancelled)
