@@ -34,19 +34,18 @@ static uint8_t value_of(uint64_t frame, unsigned output)
 static size_t make_packet(int cancels, unsigned outputs, unsigned count, uint64_t first)
 {
     size_t size = 0;
-    unsigned k, i;
     packet[size++] = LABIAL_BESIDE_FORMAT;
     packet[size++] = (uint8_t)cancels;
     packet[size++] = (uint8_t)outputs;
     packet[size++] = (uint8_t)count;
-    for (i = 0; i < 4; i++)
+    for (unsigned i = 0; i < 4; i++)
         packet[size++] = (uint8_t)(first >> 8 * i);
     packet[size++] = (uint8_t)session;
     packet[size++] = (uint8_t)(session >> 8);
-    for (i = 0; i < outputs; i++)
+    for (unsigned i = 0; i < outputs; i++)
         packet[size++] = at_rest[i % OUTPUTS];
-    for (k = 0; k < count; k++)
-        for (i = 0; i < outputs; i++)
+    for (unsigned k = 0; k < count; k++)
+        for (unsigned i = 0; i < outputs; i++)
             packet[size++] = value_of(first + k, i);
     return size;
 }

@@ -66,8 +66,8 @@ static void begin(uint32_t rate, unsigned channels)
 /* A sound of hears.py, in the second channel upside down and half as loud. */
 static void make_sound(uint32_t number, uint32_t count, unsigned channels)
 {
-    uint32_t i, state = 1;
-    for (i = 0; i < count; i++) {
+    uint32_t state = 1;
+    for (uint32_t i = 0; i < count; i++) {
         const int32_t value = hear_sound(number, i, &state);
         samples[i * channels] = (int16_t)value;
         if (channels == 2u)
@@ -136,8 +136,8 @@ static uint32_t told_until(void)
 
 static unsigned sum_of(const uint8_t *shares)
 {
-    unsigned i, sum = 0;
-    for (i = 0; i < LABIAL_VISEMES; i++)
+    unsigned sum = 0;
+    for (unsigned i = 0; i < LABIAL_VISEMES; i++)
         sum += shares[i];
     return sum;
 }
@@ -147,8 +147,7 @@ static unsigned sum_of(const uint8_t *shares)
 /* Would catch any step that is not what the exporter computes and judges a model by, at any rate. */
 TEST(frames_and_classes_are_the_exporters)
 {
-    unsigned i;
-    for (i = 0; i < HEARS; i++) {
+    for (unsigned i = 0; i < HEARS; i++) {
         hear_all(hears[i].rate, hears[i].channels, hears[i].sound, hears[i].samples, LONGEST);
         assert_int_equal(frame_count, hears[i].frames);
         assert_int_equal(faps_crc(), hears[i].faps_crc);
@@ -162,14 +161,14 @@ TEST(frames_and_classes_are_the_exporters)
 TEST(sounds_are_those_of_the_classes_that_lead)
 {
     static uint8_t leaders[FRAMES];
-    unsigned i, k, moving = 0;
+    unsigned moving = 0;
     hear_all(16000, 1, 3, 32000, LONGEST);
     assert_true(frame_count >= 100);
-    for (i = 0; i < stretch_count; i++)
+    for (unsigned i = 0; i < stretch_count; i++)
         memset(leaders + stretches[i][1], (int)stretches[i][0], stretches[i][2]);
-    for (i = 1; i + 1 < 100; i++) { /* the last frame's neighbour is not told */
+    for (unsigned i = 1; i + 1 < 100; i++) { /* the last frame's neighbour is not told */
         unsigned parts[LABIAL_VISEMES] = { 0 }, all = 0, whole = 0;
-        for (k = 0; k < 3; k++) {
+        for (unsigned k = 0; k < 3; k++) {
             const uint8_t viseme = visemes[leaders[i + k - 1]];
             if (viseme != LABIAL_VISEME_NONE) {
                 parts[viseme < LABIAL_VISEMES ? viseme : LABIAL_VISEME_SIL] += k == 1 ? 2 : 1;
@@ -177,7 +176,7 @@ TEST(sounds_are_those_of_the_classes_that_lead)
             }
         }
         assert_in_range(sum_of(sounds[i]), LABIAL_VISEME_ONE - 2, LABIAL_VISEME_ONE + 2);
-        for (k = 1; k < LABIAL_VISEMES; k++)
+        for (unsigned k = 1; k < LABIAL_VISEMES; k++)
             whole += sounds[i][k];
         if (all == 0 || all == parts[LABIAL_VISEME_SIL]) {
             assert_int_equal(whole, 0);
@@ -185,12 +184,12 @@ TEST(sounds_are_those_of_the_classes_that_lead)
         }
         whole = whole * all / (all - parts[LABIAL_VISEME_SIL]); /* of the sound */
         moving += whole > 120;
-        for (k = 1; k < LABIAL_VISEMES; k++)
+        for (unsigned k = 1; k < LABIAL_VISEMES; k++)
             assert_in_range(all * sounds[i][k] + 8, parts[k] * whole, parts[k] * whole + 16);
     }
     assert_true(moving > 20);
     assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    for (i = 100; i < frame_count; i++)
+    for (unsigned i = 100; i < frame_count; i++)
         assert_true(sounds[i][LABIAL_VISEME_SIL] >= sounds[i - 1][LABIAL_VISEME_SIL]);
     assert_ok(labial_hear_restart(&hear));
     assert_ok(labial_hear_visemes(&hear, visemes, sounds[0]));
@@ -210,9 +209,8 @@ TEST(sounds_are_those_of_the_classes_that_lead)
 TEST(blocks_of_any_length_give_the_same_frames)
 {
     static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
-    unsigned i, b;
-    for (i = 5; i < HEARS; i += 7)
-        for (b = 0; b < COUNT_OF(blocks); b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
+    for (unsigned i = 5; i < HEARS; i += 7)
+        for (unsigned b = 0; b < COUNT_OF(blocks); b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
             hear_all(hears[i].rate, hears[i].channels, hears[i].sound, hears[i].samples, blocks[b]);
             assert_int_equal(faps_crc(), hears[i].faps_crc);
             assert_int_equal(classes_crc(), hears[i].classes_crc);
@@ -222,8 +220,7 @@ TEST(blocks_of_any_length_give_the_same_frames)
 /* Would catch a latency that is not what a program must wait for. */
 TEST(a_frame_is_known_when_latency_says)
 {
-    unsigned i;
-    for (i = 0; i < COUNT_OF(rates); i++) {
+    for (unsigned i = 0; i < COUNT_OF(rates); i++) {
         const uint32_t frame = rates[i] / LABIAL_HEAR_FPS;
         uint32_t pushed, delay;
         begin(rates[i], 1);
@@ -252,11 +249,11 @@ TEST(a_frame_is_known_when_latency_says)
 TEST(two_channels_are_heard_as_their_mean)
 {
     int16_t mean[FRAMES][LABIAL_CHANNELS];
-    unsigned i, count;
+    unsigned count;
     hear_all(24000, 1, 3, 8000, 100);
     count = frame_count;
     memcpy(mean, told, sizeof mean);
-    for (i = 8000; i-- > 0;) {
+    for (unsigned i = 8000; i-- > 0;) {
         const int32_t value = samples[i], apart = value >= 0 ? 32767 - value : 32768 + value;
         samples[2u * i] = (int16_t)(value - apart);
         samples[2u * i + 1u] = (int16_t)(value + apart);
@@ -308,10 +305,9 @@ TEST(nothing_follows_the_end)
 /* Would catch an end that stays open, a way to rest that counts as sound, and one that an exact stream goes. */
 TEST(the_face_comes_to_rest_after_the_end)
 {
-    unsigned count, f, k;
-    int exact;
+    unsigned count;
     make_sound(3, 8000, 1);
-    for (exact = 1; exact >= 0; exact--) {
+    for (int exact = 1; exact >= 0; exact--) {
         begin(16000, 1);
         assert_ok(labial_hear_exact(&hear, exact));
         push_in_blocks(8000, 1, 333);
@@ -320,8 +316,8 @@ TEST(the_face_comes_to_rest_after_the_end)
         assert_int_equal(frame_count, exact ? count : count + LABIAL_EASE_FRAMES);
         assert_int_equal(told_until(), count);
     }
-    for (f = 0; f < LABIAL_EASE_FRAMES; f++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned f = 0; f < LABIAL_EASE_FRAMES; f++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double way = (f + 1.0) / LABIAL_EASE_FRAMES, share = way * way * (3 - 2 * way);
             const double error = told[count + f][k] - told[count - 1u][k] * (1 - share);
             assert_true(error > -1.1 && error < 1.1);
@@ -332,11 +328,10 @@ TEST(the_face_comes_to_rest_after_the_end)
 /* Would catch a face that opens in silence, at any level of it, and one that rests where there is sound. */
 TEST(silence_is_rest)
 {
-    unsigned i, span;
-    for (span = 32; span <= 33; span++) {
+    for (unsigned span = 32; span <= 33; span++) {
         begin(16000, 1);
         make_sound(3, 1600, 1); /* a voice */
-        for (i = 1600; i < 16000u; i++)
+        for (unsigned i = 1600; i < 16000u; i++)
             samples[i] = (int16_t)(i % 7u == 0 ? span : i % 3u);
         push_in_blocks(16000, 1, 1000);
         labial_hear_end(&hear);
@@ -347,8 +342,7 @@ TEST(silence_is_rest)
 /* Moves the samples by a constant. */
 static void add_offset(uint32_t count, int offset)
 {
-    uint32_t i;
-    for (i = 0; i < count; i++)
+    for (uint32_t i = 0; i < count; i++)
         samples[i] = (int16_t)(samples[i] + offset);
 }
 
@@ -357,12 +351,11 @@ static void add_offset(uint32_t count, int offset)
 TEST(an_offset_is_silence_at_either_end)
 {
     static const int offsets[] = { 1000, -3300, 9830 };
-    unsigned i, o, f, round;
-    for (i = 0; i < COUNT_OF(rates); i++)
-        for (o = 0; o < COUNT_OF(offsets); o++) {
+    for (unsigned i = 0; i < COUNT_OF(rates); i++)
+        for (unsigned o = 0; o < COUNT_OF(offsets); o++) {
             const uint32_t silence = rates[i] * 2u / 5u + 37u * o, voice = rates[i] / 10u;
             begin(rates[i], 1);
-            for (round = 0; round < 4u; round++) {
+            for (unsigned round = 0; round < 4u; round++) {
                 unsigned before = frame_count;
                 memset(samples, 0, silence * sizeof *samples);
                 add_offset(silence, offsets[o]);
@@ -376,7 +369,7 @@ TEST(an_offset_is_silence_at_either_end)
                 assert_ok(labial_hear_restart(&hear));
                 before = frame_count; /* and behind a voice, which is noise */
                 make_sound(3, voice, 1);
-                for (f = 0; f < voice; f++)
+                for (unsigned f = 0; f < voice; f++)
                     samples[f] = (int16_t)(samples[f] / 4);
                 memset(samples + voice, 0, silence * sizeof *samples);
                 add_offset(voice + silence, offsets[o]);
@@ -394,14 +387,13 @@ TEST(an_offset_is_silence_at_either_end)
 TEST(an_offset_changes_no_frame)
 {
     static int16_t plain[FRAMES][LABIAL_CHANNELS];
-    unsigned count = 0, round, i;
-    int offset;
-    for (offset = 0; offset <= 9830; offset += 983) {
+    unsigned count = 0;
+    for (int offset = 0; offset <= 9830; offset += 983) {
         begin(16000, 1);
-        for (round = 0; round < 3u; round++) {
+        for (unsigned round = 0; round < 3u; round++) {
             const uint32_t length = 7000u + 133u * round;
             make_sound(5, length + 3000u, 1);
-            for (i = 0; i < length; i++)
+            for (unsigned i = 0; i < length; i++)
                 samples[i] = (int16_t)(samples[i + 3000u] / 2);
             add_offset(length, offset);
             push_in_blocks(length, 1, 500);
@@ -429,9 +421,8 @@ TEST(a_cancel_eases_to_the_neutral_face)
         unsigned frames;
     } eases[] = { { 0, 1 },    { 1, 1 },     { 20, 1 },       { 21, 2 },
                   { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 } };
-    unsigned i, f, k;
     make_sound(3, 8000, 1);
-    for (i = 0; i < COUNT_OF(eases); i++) {
+    for (unsigned i = 0; i < COUNT_OF(eases); i++) {
         unsigned before;
         begin(16000, 1);
         push_in_blocks(8000, 1, 333);
@@ -439,8 +430,8 @@ TEST(a_cancel_eases_to_the_neutral_face)
         assert_true(before > 10u);
         assert_ok(labial_hear_cancel(&hear, eases[i].milliseconds));
         assert_int_equal(frame_count, before + eases[i].frames);
-        for (f = before; f < frame_count; f++)
-            for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned f = before; f < frame_count; f++)
+            for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
                 const int from = told[f - 1u][k], to = told[f][k];
                 assert_true(from < 0 ? to >= from && to <= 0 : to <= from && to >= 0);
             }
@@ -459,10 +450,9 @@ TEST(a_cancel_eases_to_the_neutral_face)
 /* Would catch a face that opens in noise before a voice, and one that has not opened when the voice begins. */
 TEST(noise_before_a_voice_is_rest)
 {
-    unsigned i;
     begin(16000, 1);
     make_sound(3, 16000, 1);
-    for (i = 0; i < 8000u; i++)
+    for (unsigned i = 0; i < 8000u; i++)
         samples[i] = (int16_t)(samples[i % 2500u] / 256);
     memmove(samples + 8000, samples + 10000, 2000 * sizeof *samples);
     push_in_blocks(16000, 1, 1000);
@@ -473,8 +463,7 @@ TEST(noise_before_a_voice_is_rest)
 /* Would catch a level that a restart forgets, one that is not set, and one that is set while a sound is heard. */
 TEST(a_restart_keeps_the_level)
 {
-    unsigned i;
-    for (i = 0; i < COUNT_OF(hears_again); i++) {
+    for (unsigned i = 0; i < COUNT_OF(hears_again); i++) {
         begin(16000, 1);
         assert_int_equal(labial_hear_level(&hear), LABIAL_HEAR_LEVEL_BEGIN);
         if (hears_again[i].set > 0) {
@@ -508,7 +497,7 @@ TEST(a_restart_keeps_the_level)
 TEST(a_restart_fades_and_then_hears_afresh)
 {
     int16_t fresh[FRAMES][LABIAL_CHANNELS];
-    unsigned f, k, count, before;
+    unsigned count, before;
     make_sound(5, 9000, 1);
     begin(44100, 1);
     labial_hear_exact(&hear, 1);
@@ -531,8 +520,8 @@ TEST(a_restart_fades_and_then_hears_afresh)
     push_in_blocks(9000, 1, 500);
     labial_hear_end(&hear);
     assert_int_equal(frame_count, before + count);
-    for (f = 0; f < count; f++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned f = 0; f < count; f++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double step = f < 8u ? (f + 1.0) / 9.0 : 1.0, share = step * step * (3 - 2 * step);
             const double last = told[before - 1u][k], wanted = last * (1 - share) + fresh[f][k]; /* which fades, too */
             const double error = told[before + f][k] - wanted;
@@ -570,15 +559,15 @@ TEST(articulation_is_a_factor)
     static int16_t plain[FRAMES][LABIAL_CHANNELS], half[FRAMES][LABIAL_CHANNELS], most[FRAMES][LABIAL_CHANNELS],
         beyond[FRAMES][LABIAL_CHANNELS];
     const unsigned count = articulate(100, 0, plain);
-    unsigned t, k, wider = 0;
+    unsigned wider = 0;
     assert_int_equal(articulate(50, 0, half), count);
     assert_int_equal(articulate(LABIAL_ARTICULATION_MAX, 0, most), count);
     assert_int_equal(articulate(UINT32_MAX, 0, beyond), count);
     assert_memory_equal(most, beyond, count * sizeof most[0]);
     assert_int_equal(articulate(0, 0, beyond), count);
     assert_int_equal(moved(0, count), 0);
-    for (t = 0; t < count; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned t = 0; t < count; t++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const int far = abs(plain[t][k]);
             assert_true(abs(2 * half[t][k] - plain[t][k]) <= 2);
             wider += abs(most[t][k]) > far + far / 2; /* but where lips are closed */
@@ -618,13 +607,13 @@ TEST(articulation_comes_nearer_by_ten)
 {
     static int16_t plain[FRAMES][LABIAL_CHANNELS], less[FRAMES][LABIAL_CHANNELS];
     const unsigned count = articulate(100, 0, plain);
-    unsigned t, k, before;
+    unsigned before;
     assert_int_equal(articulate(0, 8000, less), count);
     for (before = 0; memcmp(plain[before], less[before], sizeof plain[0]) == 0; before++)
         assert_true(before < count);
     assert_true(before >= 18u && before <= 22u); /* 25 frames, of which five were not delivered */
-    for (t = before; t < count; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned t = before; t < count; t++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double share = t - before < 10u ? 1 - (t - before) / 10.0 : 0;
             if (fabs(less[t][k] - plain[t][k] * share) > abs(plain[t][k]) * 0.12 + 12)
                 fail_msg("frame %u, channel %u: %d of %d", t, k, less[t][k], plain[t][k]);
@@ -657,7 +646,6 @@ TEST(classes_are_told_only_where_they_are_asked_for)
 TEST(the_workspace_has_the_size_that_both_formulas_give)
 {
     uint8_t *exact = (uint8_t *)malloc(HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
-    unsigned i;
     assert_non_null(exact);
     assert_int_equal(labial_hear_workspace_size(&hear_fixture), HEAR_FIXTURE_WORKSPACE_SIZE);
     assert_int_equal(labial_hear_workspace_size(NULL), 0);
@@ -667,7 +655,7 @@ TEST(the_workspace_has_the_size_that_both_formulas_give)
     make_sound(5, 16000, 1);
     push_in_blocks(16000, 1, 1000);
     labial_hear_end(&hear);
-    for (i = 0; i < 8u; i++)
+    for (unsigned i = 0; i < 8u; i++)
         assert_int_equal(exact[HEAR_FIXTURE_WORKSPACE_SIZE + i], 0x5a);
     free(exact);
 }
@@ -677,14 +665,13 @@ TEST(wrong_arguments_are_refused)
     static const uint32_t wrong[] = { 0, 1, 7999, 11025, 15999, 44000, 96000, UINT32_MAX };
     labial_hear_model_t other = hear_fixture;
     uint8_t *odd = (uint8_t *)workspace + 2;
-    unsigned i;
     const size_t size = sizeof workspace;
     assert_int_equal(labial_hear_init(NULL, &hear_fixture, 16000, 1, workspace, size, on_frame, NULL),
                      LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, NULL, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, NULL, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size, NULL, NULL), LABIAL_ERROR_NULL);
-    for (i = 0; i < COUNT_OF(wrong); i++)
+    for (unsigned i = 0; i < COUNT_OF(wrong); i++)
         assert_int_equal(labial_hear_init(&hear, &hear_fixture, wrong[i], 1, workspace, size, on_frame, NULL),
                          LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 0, workspace, size, on_frame, NULL),
@@ -700,7 +687,7 @@ TEST(wrong_arguments_are_refused)
                      LABIAL_ERROR_RANGE);
     other.format++;
     assert_int_equal(labial_hear_init(&hear, &other, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_VERSION);
-    for (i = 0; i < 2; i++) { /* after an error the stream is unusable */
+    for (unsigned i = 0; i < 2; i++) { /* after an error the stream is unusable */
         labial_hear_t *const bad = i ? &hear : NULL;
         const int error = i ? LABIAL_ERROR_STATE : LABIAL_ERROR_NULL;
         assert_int_equal(labial_hear_push(bad, samples, 1), error);
@@ -805,10 +792,9 @@ static void keep_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CH
  * callbacks, with a stream that is good, used at once, or that could not be initialised. */
 TEST(a_callback_may_begin_anew)
 {
-    unsigned call, by_class;
     make_sound(3, 16000, 1);
-    for (call = 0; call < 3; call++)
-        for (by_class = 0; by_class < 2; by_class++)
+    for (unsigned call = 0; call < 3; call++)
+        for (unsigned by_class = 0; by_class < 2; by_class++)
             for (with = 0; with < 3; with++) {
                 const unsigned before = again;
                 int result;
@@ -835,10 +821,9 @@ TEST(a_callback_may_begin_anew)
 /* The same with sound of another rate and two channels, and wherever in a frame the sound ends. */
 TEST(a_callback_may_begin_anew_at_any_rate)
 {
-    unsigned length;
     make_sound(3, 16000, 1);
     with = 1;
-    for (length = 4800; length < 5280; length += 5) {
+    for (unsigned length = 4800; length < 5280; length += 5) {
         const unsigned at_end = length % 2, before = again;
         begun = 0;
         assert_ok(

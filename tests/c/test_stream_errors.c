@@ -283,18 +283,18 @@ TEST(too_many_models_are_refused_until_ticks_make_room)
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
     const unsigned frames = 100, still_needed = LABIAL_DELAY(FIXTURE_STRIDE);
     fixture_host_t host;
-    unsigned i, ticks = 0;
+    unsigned ticks = 0;
     assert_ok(fixture_open(&host, models, FIXTURE_MODELS));
     assert_in_range(LABIAL_MODELS, 1, FIXTURE_MODELS - 1); /* what this test is written for */
     if (LABIAL_QUEUE <= LABIAL_MODELS) {                   /* too short to hold phonemes of so many */
         fixture_close(&host);
         return;
     }
-    for (i = 0; i < LABIAL_MODELS; i++) {
+    for (unsigned i = 0; i < LABIAL_MODELS; i++) {
         assert_ok(labial_use(host.stream, models[i]));
         assert_ok(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE));
     }
-    for (i = 0; i < LABIAL_MODELS; i++)
+    for (unsigned i = 0; i < LABIAL_MODELS; i++)
         assert_ok(labial_use(host.stream, models[i])); /* known already */
 #if LABIAL_MODELS > 1
     assert_ok(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE)); /* so that the last begins */

@@ -137,12 +137,11 @@ TEST(two_models_are_the_sum_of_their_steps)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_RANDOM, FIXTURE_VOWELS };
     fixture_random_t random = { 41 };
-    unsigned seed, i;
 #if LABIAL_MODELS > 1
     fixture_model_t *const firsts[] = { &computed, &mirrored, &rich, &slow };
     fixture_laughter(&narrow);
     fixture_narrow(&narrow, fixture_crossed);
-    for (seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
         fixture_model_t *const f = firsts[seed % 4], *const other = seed % 8 < 6 ? &laugh : &narrow;
         models[1] = &other->model;
         uint8_t model = 0;
@@ -150,7 +149,7 @@ TEST(two_models_are_the_sum_of_their_steps)
         f->model.search_stride = other->model.search_stride = (uint8_t)(1 + seed / 3 % LABIAL_SEARCH_STRIDE_MAX);
         models[0] = &f->model;
         fixture_stream(input, COUNT, kinds[seed % 3], seed);
-        for (i = 0; i < COUNT; i++) {
+        for (unsigned i = 0; i < COUNT; i++) {
             if (fixture_below(&random, 1 + seed / 6) == 0)
                 model = !model;
             input[i].model = i == 0 ? 0 : model;
@@ -245,14 +244,13 @@ TEST(articulated_streams_are_the_sum_of_their_steps)
 TEST(two_articulated_models_are_the_sum_of_their_steps)
 {
     fixture_random_t random = { 43 };
-    unsigned seed, i;
 #if LABIAL_MODELS > 1
     models[0] = &rich.model;
     models[1] = &laugh.model;
-    for (seed = 0; seed < FIXTURE_ROUNDS(20); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(20); seed++) {
         uint8_t model = 0;
         fixture_stream(input, ARTICULATED, FIXTURE_VOWELS, seed);
-        for (i = 0; i < ARTICULATED; i++) {
+        for (unsigned i = 0; i < ARTICULATED; i++) {
             if (fixture_below(&random, 4 + seed) == 0)
                 model = !model;
             input[i].model = i == 0 ? 0 : model;

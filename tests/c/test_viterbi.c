@@ -171,14 +171,14 @@ static unsigned check_path(const labial_search_t *search, unsigned last, unsigne
 TEST(paths_are_those_of_the_dense_programme)
 {
     fixture_random_t random = { 12 };
-    unsigned round, t, changed = 0, leaps = 0, units = 0;
-    for (round = 0; round < FIXTURE_ROUNDS(400); round++) {
+    unsigned changed = 0, leaps = 0, units = 0;
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(400); round++) {
         unsigned spans[STEPS], begin = 0;
         labial_search_t search;
         make(&random, 1 + fixture_below(&random, LABIAL_STATES_MAX), round % 3 ? 30 : 256,
              round % 2 ? LABIAL_POSITION_MAX : 4000, round % 4 < 2 ? 3000 : 100);
         memset(&search, 0x5a, sizeof search);
-        for (t = 0; t < STEPS; t++) {
+        for (unsigned t = 0; t < STEPS; t++) {
             spans[t] = 1 + fixture_below(&random, LABIAL_SEARCH_STRIDE_MAX);
             take_step(&search, t, begin, spans[t], fixture_below(&random, 10) == 0);
             check_scores(&search, steps[t].cost, steps[t].ends_unit, "dense");
