@@ -383,36 +383,6 @@ TEST(an_offset_is_silence_at_either_end)
         }
 }
 
-/* Would catch an offset that changes a single frame at 16 kHz, where nothing is rounded. */
-TEST(an_offset_changes_no_frame)
-{
-    static int16_t plain[FRAMES][LABIAL_CHANNELS];
-    unsigned count = 0;
-    for (int offset = 0; offset <= 9830; offset += 983) {
-        begin(16000, 1);
-        for (unsigned round = 0; round < 3u; round++) {
-            const uint32_t length = 7000u + 133u * round;
-            make_sound(5, length + 3000u, 1);
-            for (unsigned i = 0; i < length; i++)
-                samples[i] = (int16_t)(samples[i + 3000u] / 2);
-            add_offset(length, offset);
-            push_in_blocks(length, 1, 500);
-            if (round == 1u)
-                assert_ok(labial_hear_cancel(&hear, 100));
-            else
-                assert_ok(labial_hear_end(&hear));
-            assert_ok(labial_hear_restart(&hear));
-        }
-        if (offset == 0) {
-            count = frame_count;
-            memcpy(plain, told, sizeof plain);
-        }
-        assert_int_equal(frame_count, count);
-        assert_memory_equal(told, plain, count * sizeof plain[0]);
-    }
-    assert_true(count > 60u);
-}
-
 /* Would catch a jump of the lips, or frames after the neutral one. */
 TEST(a_cancel_eases_to_the_neutral_face)
 {

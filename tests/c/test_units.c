@@ -139,6 +139,7 @@ static void compare_next(size_t at, size_t count, int ended, int must)
     const int told = labial_units_next(&units, models, ended, &spoken);
     const oracle_frame_t *frame;
     uint32_t left = 0;
+    assert_in_range(told, 0, 1);
     while (at + left < count && !wanted[at + left].is_first)
         left++;
     assert_true(units.count == 0 || at + left == count || labial_units_left(&units, models) == left);
