@@ -29,6 +29,9 @@ typedef struct {
 uint32_t fixture_random(fixture_random_t *random);                /* 32 bits */
 uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit - 1 */
 
+/* Those of a test, from the seed that it sets. */
+extern fixture_random_t fixture_dice;
+
 /* Notes and returns a seed. What was noted last since a test began, and how often, goes with the test's failures. */
 uint32_t fixture_seed(uint32_t seed);
 uint32_t fixture_seed_last(void);

@@ -16,14 +16,7 @@ static labial_beside_t player;
 static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, ROOM)];
 static uint8_t packet[LABIAL_BESIDE_LONGEST];
 static const uint8_t at_rest[OUTPUTS] = { 10, 128, 250 };
-static uint32_t seed;
 static uint16_t session; /* of the packets that are made */
-
-static uint32_t draw(uint32_t below)
-{
-    seed = seed * 1664525u + 1013904223u;
-    return (seed >> 8) % below;
-}
 
 /* What frame `frame` shows. */
 static uint8_t value_of(uint64_t frame, unsigned output)
@@ -57,7 +50,7 @@ static int feed(int cancels, unsigned count, uint64_t first)
 
 SETUP(begin)
 {
-    seed = fixture_seed(1);
+    draw_from(1);
     session = 0x1234;
     memset(memory, 0xa5, sizeof memory);
     return labial_beside_init(&player, OUTPUTS, RATE, memory, sizeof memory) == LABIAL_OK ? 0 : -1;
@@ -95,7 +88,7 @@ TEST_AFTER(begin, frames_come_with_their_samples)
             assert_ok(feed(0, 2, frame));
             assert_shows((uint32_t)(next - 1), frame);
             assert_shows((uint32_t)next, frame + 1);
-            sample = next + draw(8) * (rate / 3) + draw(1000) + (draw(4) ? 0 : draw(1u << 24) * UINT64_C(100));
+            sample = next + below(8) * (rate / 3) + below(1000) + (below(4) ? 0 : below(1u << 24) * UINT64_C(100));
         }
     }
 }
@@ -329,9 +322,9 @@ TEST(no_value_changes_by_more_than_its_limit)
         assert_int_equal(feed(0, 0, 0), 0);
         memcpy(last, at_rest, OUTPUTS);
         for (unsigned k = 0; k < 3000; k++) {
-            if (draw(100) >= loses)
-                (void)feed(!draw(50), 1 + draw(20), k);
-            session = (uint16_t)(session + !draw(200));
+            if (below(100) >= loses)
+                (void)feed(!below(50), 1 + below(20), k);
+            session = (uint16_t)(session + !below(200));
             assert_true(labial_beside_tick(&player, k * STEP, values) >= 0);
             for (unsigned i = 0; i < OUTPUTS; i++)
                 assert_true(abs(values[i] - last[i]) <= limits[i]);
@@ -361,9 +354,9 @@ TEST(changes_have_units)
 TEST(bytes_have_units)
 {
     for (unsigned i = 0; i < 20000; i++) {
-        const int32_t low = (int32_t)draw(8000000) - 4000000,
-                      high = low + (int32_t)draw(8000001) - (int32_t)draw(2) * 8000000;
-        const uint8_t byte = (uint8_t)draw(256);
+        const int32_t low = (int32_t)below(8000000) - 4000000,
+                      high = low + (int32_t)below(8000001) - (int32_t)below(2) * 8000000;
+        const uint8_t byte = (uint8_t)below(256);
         const double exact = low + ((double)high - low) * byte / 255;
         if (high - low >= -8000000)
             assert_true(fabs(labial_beside_value(byte, low, high) - exact) <= .5);
@@ -430,15 +423,15 @@ static int plain_at(int64_t sample, int64_t rate, uint8_t values[OUTPUTS])
 TEST_AFTER(begin, random_packets_and_clocks)
 {
     for (unsigned round = 0; round < 60; round++) {
-        const int64_t rate = 8000 + 4000 * draw(10) + draw(2) * 1025;
+        const int64_t rate = 8000 + 4000 * below(10) + below(2) * 1025;
         int64_t sample = 0, sent = 0, end;
-        const unsigned loses = draw(30);
+        const unsigned loses = below(30);
         assert_int_equal(labial_beside_init(&player, OUTPUTS, (uint32_t)rate, memory, sizeof memory), 0);
         memset(&plain, 0, sizeof plain);
         plain.quiet = HOLD;
         memcpy(plain.pose, at_rest, OUTPUTS);
         for (unsigned i = 0; i < OUTPUTS; i++) {
-            plain.limits[i] = (uint8_t)(1 + draw(255));
+            plain.limits[i] = (uint8_t)(1 + below(255));
             assert_int_equal(labial_beside_limit(&player, i, plain.limits[i]), 0);
         }
         assert_int_equal(feed(0, 0, 0), 0);
@@ -446,47 +439,47 @@ TEST_AFTER(begin, random_packets_and_clocks)
             uint8_t values[OUTPUTS], wanted[OUTPUTS];
             const int64_t heard = sample * 50 / rate;
             while (sent < heard + 40) {
-                const unsigned count = 1 + draw(20), repeat = draw(3) ? 0 : draw(20);
+                const unsigned count = 1 + below(20), repeat = below(3) ? 0 : below(20);
                 const int64_t first = sent > repeat ? sent - repeat : 0;
                 sent += count;
-                if (draw(100) < loses)
+                if (below(100) < loses)
                     continue;
                 end = sent - first;
                 plain_feed(0, (unsigned)end, first);
                 assert_int_equal(feed(0, (unsigned)end, (uint64_t)first), 0);
             }
-            if (!draw(400)) {
+            if (!below(400)) {
                 plain_feed(1, 0, sent);
                 assert_int_equal(feed(1, 0, (uint64_t)sent), LABIAL_CANCELLED);
-                if (draw(2))
+                if (below(2))
                     sample = sent * rate / 50; /* what it had is dropped */
             }
-            if (!draw(200)) { /* by the player itself */
-                const uint32_t frames = draw(3) ? draw(20) : LABIAL_CANCEL_MAX + draw(2);
+            if (!below(200)) { /* by the player itself */
+                const uint32_t frames = below(3) ? below(20) : LABIAL_CANCEL_MAX + below(2);
                 plain_feed(1, 0, 0);
                 plain.left = frames > LABIAL_CANCEL_MAX ? (int)LABIAL_CANCEL_MAX : (int)frames;
-                assert_ok(labial_beside_cancel(&player, frames > 0 ? frames * 20 - draw(20) : 0));
+                assert_ok(labial_beside_cancel(&player, frames > 0 ? frames * 20 - below(20) : 0));
             }
             const int result = plain_at(sample, rate, wanted);
             assert_int_equal(labial_beside_tick(&player, (uint32_t)sample, values), result);
             assert_memory_equal(values, wanted, OUTPUTS);
-            switch (draw(40)) {
+            switch (below(40)) {
             case 0:
                 break; /* stands still */
             case 1:
-                sample -= sample < rate / 10 ? 0 : draw((uint32_t)rate / 10);
+                sample -= sample < rate / 10 ? 0 : below((uint32_t)rate / 10);
                 break;
             case 2:
-                sample += draw((uint32_t)rate);
+                sample += below((uint32_t)rate);
                 break;
             case 3:
-                if (!draw(20) && sample > rate * 3) {
+                if (!below(20) && sample > rate * 3) {
                     sample -= rate * 2; /* a new beginning */
                     sent = sample * 50 / rate;
                 }
                 break;
             default:
-                sample += rate / 50 + draw(200) - 100;
+                sample += rate / 50 + below(200) - 100;
                 break;
             }
             if (sample < 0)

@@ -29,17 +29,6 @@ static int32_t memory[LABIAL_FACE_SIZE(OUTPUTS, AHEAD_MOST) / 4 + 1];
 static labial_rig_output_t outputs[OUTPUTS];
 static labial_rig_t rig = { outputs, 1 };
 static int32_t values[OUTPUTS + 1];
-static fixture_random_t dice;
-
-static uint32_t below(uint32_t limit)
-{
-    return fixture_below(&dice, limit);
-}
-
-static int32_t between(int32_t low, int32_t high)
-{
-    return low + (int32_t)below((uint32_t)(high - low) + 1u);
-}
 
 /* A jaw without limits of its motion: 1400 at rest, 1 unit for each unit of the lips' opening beyond contact. */
 static labial_rig_output_t jaw(int32_t slew, int32_t acceleration)
@@ -140,7 +129,7 @@ TEST(sounds_move_it)
 /* Outputs with limits see as far as labial_rig_apply_ahead() with the same frames. */
 TEST(look_ahead_is_that_of_the_rig)
 {
-    dice.state = fixture_seed(7);
+    draw_from(7);
     for (unsigned round = 0; round < FIXTURE_ROUNDS(60); round++) {
         int16_t frames[120][LABIAL_CHANNELS] = { { 0 } };
         const unsigned ahead = below(AHEAD_MOST + 1u);
@@ -527,12 +516,12 @@ static void any_frame(void)
         }
         for (unsigned i = 0; i < rig.count; i++)
             wanted[i] = meant(&outputs[i], faps);
-        labial_face_frame(&face, fixture_random(&dice), faps);
+        labial_face_frame(&face, chance(), faps);
     } else {
         int32_t numbers[OUTPUTS];
         for (unsigned i = 0; i < rig.count; i++) {
             numbers[i] = below(9) ? between(outputs[i].minimum, outputs[i].maximum)
-                                  : (int32_t)(fixture_random(&dice) & 0x7fffffffu) - 0x40000000;
+                                  : (int32_t)(chance() & 0x7fffffffu) - 0x40000000;
             wanted[i] = limited(numbers[i], outputs[i].minimum, outputs[i].maximum);
         }
         assert_ok(labial_face_values(&face, numbers));
@@ -544,7 +533,7 @@ static void any_frame(void)
 TEST(contract_holds_for_all_calls)
 {
     static uint32_t rests;
-    dice.state = fixture_seed(11);
+    draw_from(11);
     for (unsigned round = 0; round < FIXTURE_ROUNDS(700); round++) {
         const unsigned ahead = below(3) ? below(8) : below(AHEAD_MOST + 1u);
         rig.count = (uint16_t)(1u + below(OUTPUTS));
@@ -559,7 +548,7 @@ TEST(contract_holds_for_all_calls)
         model_begin(ahead);
         labial_rig_rest(&rig, last);
         memset(before, 0, sizeof before);
-        now = below(2) ? fixture_random(&dice) : UINT32_MAX - 200;
+        now = below(2) ? chance() : UINT32_MAX - 200;
         is_timed = 0;
         for (unsigned phase = 0; phase < 6; phase++) {
             const unsigned steady = below(4); /* a source that is never late, or one that often is */
@@ -633,7 +622,7 @@ TEST(contract_holds_for_all_calls)
 /* A table that was not checked: whatever comes out, no sanitizer may object and nothing else is written. */
 TEST(unchecked_rigs_stay_defined)
 {
-    dice.state = fixture_seed(3);
+    draw_from(3);
     for (unsigned round = 0; round < FIXTURE_ROUNDS(3000); round++) {
         uint8_t *bytes = (uint8_t *)outputs;
         rig.count = 1;
@@ -643,12 +632,12 @@ TEST(unchecked_rigs_stay_defined)
         values[1] = CANARY;
         assert_ok(labial_face_init(&face, &rig, 1u + below(1000), 3, memory, sizeof memory));
         for (unsigned i = 0; i < 20; i++) {
-            int32_t any = (int32_t)(fixture_random(&dice) & 0x7fffffffu) - (int32_t)below(0x7fffffff);
+            int32_t any = (int32_t)(chance() & 0x7fffffffu) - (int32_t)below(0x7fffffff);
             give((int32_t)below(3000));
             labial_face_values(&face, &any);
             if (below(8) == 0)
                 labial_face_place(&face, &any);
-            labial_face_due(&face, fixture_random(&dice));
+            labial_face_due(&face, chance());
             labial_face_tick(&face, values);
             assert_int_equal(values[1], CANARY);
         }

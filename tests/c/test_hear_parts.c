@@ -234,12 +234,10 @@ static double wanted(double energy, double level)
     return ((relative < -12 ? -12 : relative > 8 ? 8 : relative) + 3) / 4;
 }
 
-static fixture_random_t chance = { 5 };
-
 /* A number in -1 .. 1. */
 static double drawn(void)
 {
-    return (double)fixture_random(&chance) / 2147483648.0 - 1;
+    return (double)chance() / 2147483648.0 - 1;
 }
 
 /* Sounds of the kinds that occur: noise, tones, clicks, at any level, with an offset or without. */
@@ -411,9 +409,7 @@ TEST(the_loudest_sounds_stay_within_their_types)
         int16_t window[WINDOW], features[BANDS];
         const unsigned period = 1u + round % 64u;
         for (unsigned i = 0; i < WINDOW; i++)
-            window[i] = round < 100u                    ? (i / period % 2u ? 32767 : -32768)
-                        : fixture_random(&chance) >> 31 ? 32767
-                                                        : -32768;
+            window[i] = round < 100u ? (i / period % 2u ? 32767 : -32768) : chance() >> 31 ? 32767 : -32768;
         assert_true(hear_after(13, window, features) < 45);
         for (unsigned b = 0; b < BANDS; b++)
             assert_true(features[b] >= LEAST && features[b] <= 1408);

@@ -50,18 +50,6 @@ static int32_t moved(const labial_rig_output_t *output, int32_t last, int16_t fa
     return value[0];
 }
 
-static fixture_random_t dice;
-
-static uint32_t chance(void)
-{
-    return fixture_random(&dice);
-}
-
-static int32_t between(int32_t low, int32_t high)
-{
-    return low + (int32_t)fixture_below(&dice, (uint32_t)(high - low) + 1u);
-}
-
 TEST(jaw_macro_closes_and_opens)
 {
     static const labial_rig_output_t up = LABIAL_RIG_JAW(1400, 1900), down = LABIAL_RIG_JAW(1900, 1400);
@@ -230,7 +218,7 @@ TEST(acceleration_comes_to_rest)
 /* Whatever is asked, seen or claimed of the last change, the limits hold. */
 TEST(acceleration_holds_for_all)
 {
-    dice.state = 5;
+    draw_from(5);
     for (unsigned round = 0; round < 300; round++) {
         labial_rig_output_t output = plain();
         const labial_rig_t rig = { &output, 1 };
@@ -455,7 +443,7 @@ static double expected(const labial_rig_output_t *output, const int16_t faps[LAB
 TEST(random_rigs_equal_double)
 {
     unsigned off = 0;
-    dice.state = 1;
+    draw_from(1);
     for (unsigned round = 0; round < 4000; round++) {
         int16_t amounts[LABIAL_VISEMES];
         labial_rig_output_t output = any_sound_output();
@@ -495,7 +483,7 @@ TEST(random_rigs_equal_double)
 TEST(unchecked_tables_stay_defined)
 {
     unsigned sound = 0;
-    dice.state = 2;
+    draw_from(2);
     for (unsigned round = 0; round < 20000; round++) {
         labial_rig_output_t output;
         labial_rig_curve_t curve;

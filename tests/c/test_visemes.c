@@ -29,7 +29,6 @@ static uint32_t workspace[1024];
 static uint8_t found[FRAMES][LABIAL_VISEMES];
 static uint8_t spoken[FRAMES]; /* phoneme of each frame */
 static unsigned frames, known;
-static fixture_random_t dice;
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -106,13 +105,12 @@ TEST_AFTER(begin, shares_follow_the_formula_however_phonemes_come)
 {
     for (uint32_t seed = 1; seed <= (uint32_t)FIXTURE_ROUNDS(40); seed++) {
         begin(state);
-        dice.state = fixture_seed(seed);
+        draw_from(seed);
         labial_exact(&stream, 1);
         for (unsigned i = 0; i < 60; i++) {
-            const unsigned phoneme = fixture_below(&dice, FIXTURE_SPEECH_COUNT);
-            const unsigned length =
-                fixture_below(&dice, 5) == 0 ? 1u + fixture_below(&dice, 40) : 1u + fixture_below(&dice, 6);
-            say(phoneme, length, seed % 3u == 0 || (seed % 3u == 1u && fixture_below(&dice, 4) == 0));
+            const unsigned phoneme = below(FIXTURE_SPEECH_COUNT);
+            const unsigned length = below(5) == 0 ? 1u + below(40) : 1u + below(6);
+            say(phoneme, length, seed % 3u == 0 || (seed % 3u == 1u && below(4) == 0));
         }
         labial_end(&stream);
         run();
