@@ -12,6 +12,7 @@
 
 #include "labial/labial.h"
 #include "labial/names.h"
+#include "labial/rig.h"
 
 /* Rounds of a test that does the same over and over with other numbers: `full` of them, or, where every instruction is
  * interpreted (the memory check), a share that still takes every way through the code. */
@@ -155,6 +156,14 @@ uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count);
 
 /* Whether `frames` is the rounded length of `ms`; an exact half may go either way. */
 int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
+
+/* ---- Rigs (labial/rig.h) in doubles ---- */
+
+double fixture_limited(double value, double low, double high);
+
+/* Where an output is at rest, and where it belongs with these FAPs and sounds, or null, without limits of its motion. */
+double fixture_rest(const labial_rig_output_t *output);
+double fixture_output(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /* ---- Input that ends exactly where its heap block does, so that a sanitizer sees every byte read beyond it ---- */
 

@@ -301,37 +301,13 @@ typedef struct {
 
 static model_t model;
 
-static double limited(double value, double low, double high)
-{
-    return value < low ? low : value > high ? high : value;
-}
-
-static double resting(const labial_rig_output_t *output)
-{
-    return limited(output->contact ? output->closed : output->neutral, output->minimum, output->maximum);
-}
-
-/* The header's equations; all sums and products of these rigs are exact. */
-static double meant(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS])
-{
-    double move = 0, value;
-    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
-        move += (double)output->weights[i] / 4096.0 * faps[i];
-    move = floor(move * output->gain / 65536.0 + 0.5);
-    value = limited(output->neutral + (output->invert ? -move : move), output->minimum, output->maximum);
-    if (output->contact)
-        value =
-            floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
-    return value;
-}
-
 static void model_begin(unsigned ahead)
 {
     memset(&model, 0, sizeof model);
     model.ahead = ahead;
     model.silent = HOLD + 1;
     for (unsigned i = 0; i < rig.count; i++)
-        model.value[i] = model.wanted[i] = resting(&outputs[i]);
+        model.value[i] = model.wanted[i] = fixture_rest(&outputs[i]);
 }
 
 static void model_frame(const double *wanted)
@@ -354,7 +330,7 @@ static void model_cancel(uint32_t ms)
     if (model.silent < HOLD)
         model.silent = HOLD;
     if (model.left > 0)
-        model.left = (long)limited(ceil(ms / 20.0), 1, 1000);
+        model.left = (long)fixture_limited(ceil(ms / 20.0), 1, 1000);
 }
 
 static void model_skip(unsigned count)
@@ -381,7 +357,7 @@ static void model_tick(int moves)
         model.left--;
     for (unsigned i = 0; i < rig.count; i++) {
         const labial_rig_output_t *output = &outputs[i];
-        const double rest = resting(output);
+        const double rest = fixture_rest(output);
         double wanted, step;
         if (model.plays) {
             model.wanted[i] = model.frames[model.head][i];
@@ -398,15 +374,15 @@ static void model_tick(int moves)
         else if (model.plays && output->contact && output->slew > 0)
             for (size_t k = 0; k < held; k++)
                 if (model.frames[model.head + k][i] - output->closed == 0) {
-                    wanted = limited(wanted, output->closed - (double)k * output->slew,
-                                     output->closed + (double)k * output->slew);
+                    wanted = fixture_limited(wanted, output->closed - (double)k * output->slew,
+                                             output->closed + (double)k * output->slew);
                     break;
                 }
         step = wanted - model.value[i];
         if (fabs(wanted - rest) > 0 && fabs(step) < output->deadband)
             step = 0;
         if (output->slew > 0)
-            step = limited(step, -output->slew, output->slew);
+            step = fixture_limited(step, -output->slew, output->slew);
         if (moves && output->acceleration == 0)
             model.value[i] += step;
     }
@@ -474,7 +450,7 @@ static int tick_both(int moves)
             before[i] = change;
         else
             assert_int_equal(change, 0);
-        rests = rests && fabs(resting(output) - values[i]) == 0;
+        rests = rests && fabs(fixture_rest(output) - values[i]) == 0;
         last[i] = values[i];
     }
     assert_int_equal(values[rig.count], CANARY);
@@ -515,14 +491,14 @@ static void any_frame(void)
             faps[FAP52] = (int16_t)between(-most, most);
         }
         for (unsigned i = 0; i < rig.count; i++)
-            wanted[i] = meant(&outputs[i], faps);
+            wanted[i] = fixture_output(&outputs[i], faps, NULL);
         labial_face_frame(&face, chance(), faps);
     } else {
         int32_t numbers[OUTPUTS];
         for (unsigned i = 0; i < rig.count; i++) {
             numbers[i] = below(9) ? between(outputs[i].minimum, outputs[i].maximum)
                                   : (int32_t)(chance() & 0x7fffffffu) - 0x40000000;
-            wanted[i] = limited(numbers[i], outputs[i].minimum, outputs[i].maximum);
+            wanted[i] = fixture_limited(numbers[i], outputs[i].minimum, outputs[i].maximum);
         }
         assert_ok(labial_face_values(&face, numbers));
     }
@@ -571,7 +547,7 @@ TEST(contract_holds_for_all_calls)
                     break;
                 case 21:
                     slow = late < 5 ? below(31) : 255 + below(1000);
-                    model.apart = (long)limited(slow, 1, 255);
+                    model.apart = (long)fixture_limited(slow, 1, 255);
                     model.start = model.now;
                     assert_ok(labial_face_soft_start(&face, slow));
                     break;

@@ -405,36 +405,14 @@ static int16_t any_fap(void)
     }
 }
 
-static double limited(double value, double low, double high)
-{
-    return value < low ? low : value > high ? high : value;
-}
-
-static double rest_of(const labial_rig_output_t *output)
-{
-    return limited(output->contact ? output->closed : output->neutral, output->minimum, output->maximum);
-}
-
-/* The header's equations in double precision. */
+/* The header's equations in double precision, of an output that stood at `last`. */
 static double expected(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares,
                        double last)
 {
-    double move = 0;
-    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
-        move += (double)output->weights[i] / 4096.0 * faps[i];
-    move = floor(move * output->gain / 65536.0 + 0.5);
-    double sounds = 0;
-    for (unsigned i = 0; i < LABIAL_VISEMES && shares && output->visemes; i++)
-        sounds += output->visemes[i] * (double)shares[i] / LABIAL_VISEME_ONE;
-    double value = output->neutral + (output->invert ? -move : move) + floor(sounds + 0.5);
-    value = limited(value, output->minimum, output->maximum);
-    if (output->contact)
-        value =
-            floor(value + (output->closed - value) * limited((136.0 + faps[FAP51] + faps[FAP52]) / 64.0, 0, 1) + .5);
-    last = limited(last, output->minimum, output->maximum);
-    if (fabs(value - last) < output->deadband && fabs(value - rest_of(output)) > 0)
+    const double value = fixture_output(output, faps, shares);
+    if (fabs(value - last) < output->deadband && fabs(value - fixture_rest(output)) > 0)
         return last;
-    return output->slew > 0 ? limited(value, last - output->slew, last + output->slew) : value;
+    return output->slew > 0 ? fixture_limited(value, last - output->slew, last + output->slew) : value;
 }
 
 /* Would catch an overflow, a wrong rounding or a limit that is left, anywhere in the range of a checked table. All sums
@@ -454,12 +432,12 @@ TEST(random_rigs_equal_double)
         output.visemes = chance() % 2u ? amounts : NULL;
         assert_ok(labial_rig_check(&rig));
         assert_ok(labial_rig_rest(&rig, &value));
-        assert_int_equal(value, (int32_t)rest_of(&output));
+        assert_int_equal(value, (int32_t)fixture_rest(&output));
         for (unsigned frame = 0; frame < 12; frame++) {
             int16_t faps[LABIAL_CHANNELS];
             if (chance() % 8u == 0) /* never set, or set by a fault */
                 value = (int32_t)(chance() & 0x7fffffffu) - (int32_t)(chance() & 0x7fffffffu);
-            const int32_t last = (int32_t)limited(value, output.minimum, output.maximum);
+            const int32_t last = (int32_t)fixture_limited(value, output.minimum, output.maximum);
             for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
                 faps[i] = any_fap();
             uint8_t shares[LABIAL_VISEMES];
