@@ -402,6 +402,22 @@ TEST(silence_and_constants_have_the_least_features)
     }
 }
 
+/* Would catch a sound that is clipped at both ends and heard louder than one that is clipped a step before. */
+TEST(the_whole_range_is_heard_like_nearly_all_of_it)
+{
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(100); round++) {
+        int16_t whole[WINDOW], nearly[WINDOW], features[2][BANDS];
+        for (unsigned i = 0; i < WINDOW; i++) {
+            const double value = 60000 * sin(0.05 * (1 + round % 20) * i) + 9000 * drawn();
+            whole[i] = (int16_t)(value > 32767 ? 32767 : value < -32768 ? -32768 : value);
+            nearly[i] = (int16_t)(whole[i] < -32767 ? -32767 : whole[i]);
+        }
+        assert_true(fabs(hear_after(13, whole, features[0]) - hear_after(13, nearly, features[1])) < 0.05);
+        for (unsigned b = 0; b < BANDS; b++)
+            assert_true(abs(features[0][b] - features[1][b]) < 0.1 * 512);
+    }
+}
+
 /* Would catch an intermediate sum beyond its type, which the sanitizer reports: the loudest sounds there are. */
 TEST(the_loudest_sounds_stay_within_their_types)
 {
