@@ -136,7 +136,8 @@ TEST(contacts_have_their_frames)
         { "t1 p1 t1 p1 t1", "xxxxx", NULL },
         { "t3 p1 p1 t3", "..xxx...", NULL }, /* two that follow one another are one contact */
         { "t3 p9 p1 t3", ".....xxxxx..x...", NULL },
-        { "t2 o1 t2", ".....", NULL }, /* a plain floor is none */
+        { "t3 p3 p3 p3 p3 t3", "...xxxxxxxxxxxx...", NULL }, /* a hum of short stops (docs/servos.md) */
+        { "t2 o1 t2", ".....", NULL },                       /* a plain floor is none */
         { "t3 f2 p1 t3", "....xxx..", "..xxx...." },
         { "t3 f4 p4 t3", ".......xxx....", "...xxx........" },
         { "f1 p1", "xx", "xx" },
