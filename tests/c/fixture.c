@@ -3,6 +3,7 @@
  */
 #include "fixture.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -442,6 +443,34 @@ int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate)
 {
     const uint64_t wanted = ms * rate, got = frames * 1000u;
     return (wanted > got ? wanted - got : got - wanted) <= 500u;
+}
+
+/* ---- Rigs in doubles ---- */
+
+double fixture_limited(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+double fixture_rest(const labial_rig_output_t *output)
+{
+    return fixture_limited(output->contact ? output->closed : output->neutral, output->minimum, output->maximum);
+}
+
+double fixture_output(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares)
+{
+    const double opening = -(double)faps[3] - faps[4]; /* FAPs 51 and 52 */
+    double move = 0, sounds = 0;
+    for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
+        move += (double)output->weights[i] / 4096.0 * faps[i];
+    move = floor(move * output->gain / 65536.0 + 0.5);
+    for (unsigned i = 0; i < LABIAL_VISEMES && shares && output->visemes; i++)
+        sounds += output->visemes[i] * (double)shares[i] / LABIAL_VISEME_ONE;
+    double value = output->neutral + (output->invert ? -move : move) + floor(sounds + 0.5);
+    value = fixture_limited(value, output->minimum, output->maximum);
+    if (output->contact)
+        value = floor(value + (output->closed - value) * fixture_limited((136.0 - opening) / 64.0, 0, 1) + .5);
+    return value;
 }
 
 /* ---- Input that ends exactly where its heap block does ---- */

@@ -12,6 +12,7 @@
 
 #include "labial/labial.h"
 #include "labial/names.h"
+#include "labial/rig.h"
 
 /* Rounds of a test that does the same over and over with other numbers: `full` of them, or, where every instruction is
  * interpreted (the memory check), a share that still takes every way through the code. */
@@ -28,6 +29,9 @@ typedef struct {
 
 uint32_t fixture_random(fixture_random_t *random);                /* 32 bits */
 uint32_t fixture_below(fixture_random_t *random, uint32_t limit); /* 0 .. limit - 1 */
+
+/* Those of a test, from the seed that it sets. */
+extern fixture_random_t fixture_dice;
 
 /* Notes and returns a seed. What was noted last since a test began, and how often, goes with the test's failures. */
 uint32_t fixture_seed(uint32_t seed);
@@ -153,6 +157,14 @@ uint64_t fixture_duration(const fixture_phoneme_t *input, size_t count);
 /* Whether `frames` is the rounded length of `ms`; an exact half may go either way. */
 int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
 
+/* ---- Rigs (labial/rig.h) in doubles ---- */
+
+double fixture_limited(double value, double low, double high);
+
+/* Where an output is at rest, and where it belongs with these FAPs and sounds, or null, without limits of its motion. */
+double fixture_rest(const labial_rig_output_t *output);
+double fixture_output(const labial_rig_output_t *output, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
+
 /* ---- Input that ends exactly where its heap block does, so that a sanitizer sees every byte read beyond it ---- */
 
 /* A copy of `bytes`, to be freed. */
@@ -204,6 +216,9 @@ typedef struct {
 /* Returns what labial_init() does with the first model. The workspace suits the largest of them. */
 int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count);
 void fixture_close(fixture_host_t *host);
+
+/* Initialises the stream anew where it lies, with an empty recorder. */
+int fixture_open_again(fixture_host_t *host);
 
 /* The calls of that name; what is expected of the ticks that follow depends on them. Each must succeed. */
 void fixture_end(fixture_host_t *host);

@@ -33,26 +33,43 @@ void fixture_record(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNE
     memcpy(recorder->frames[recorder->count++], faps, sizeof recorder->frames[0]);
 }
 
-int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count)
+/* Bytes of the workspace, which suits the largest of the models. */
+static uint32_t size_of_workspace(const fixture_host_t *host)
 {
     uint32_t size = 0;
+    for (unsigned i = 0; i < host->model_count; i++) {
+        const uint32_t wanted = labial_workspace_size(host->models[i]);
+        size = wanted > size ? wanted : size;
+    }
+    return size;
+}
+
+int fixture_open_again(fixture_host_t *host)
+{
+    host->recorder.count = host->begun = 0;
+    host->recorder.next = 0;
+    host->ended = host->cancelled = 0;
+    host->on_way = host->current = 0;
+    const int result = labial_init(host->stream, host->models[0], host->workspace, size_of_workspace(host),
+                                   fixture_record, &host->recorder);
+    return result == LABIAL_OK ? labial_exact(host->stream, 1) : result;
+}
+
+int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsigned model_count)
+{
     memset(host, 0, sizeof *host);
     host->random.state = 0x1234567u;
     host->model_count = model_count;
-    for (unsigned i = 0; i < model_count; i++) {
-        const uint32_t wanted = labial_workspace_size(models[i]);
+    for (unsigned i = 0; i < model_count; i++)
         host->models[i] = models[i];
-        if (wanted > size)
-            size = wanted;
-    }
+    const uint32_t size = size_of_workspace(host);
     host->stream = (labial_t *)malloc(sizeof *host->stream);
     host->workspace = (uint32_t *)malloc(size ? size : 4u);
     if (!host->stream || !host->workspace)
         abort();
     memset(host->stream, 0xa5, sizeof *host->stream);
     memset(host->workspace, 0x5a, size);
-    const int result = labial_init(host->stream, models[0], host->workspace, size, fixture_record, &host->recorder);
-    return result == LABIAL_OK ? labial_exact(host->stream, 1) : result;
+    return fixture_open_again(host);
 }
 
 void fixture_close(fixture_host_t *host)

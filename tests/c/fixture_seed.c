@@ -1,5 +1,5 @@
 /*
- * fixture_seed.c - the seed of what a test drew last, for what its failures print (suite.h).
+ * fixture_seed.c - what a test draws from, and its last seed, for what its failures print (suite.h).
  */
 #include "fixture.h"
 
@@ -7,6 +7,8 @@ static struct {
     uint32_t last;
     unsigned long count;
 } seeds;
+
+fixture_random_t fixture_dice;
 
 uint32_t fixture_seed(uint32_t seed)
 {

@@ -247,7 +247,7 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
                      const double *held, const uint8_t *told, double (*motion)[LABIAL_CHANNELS], size_t room)
 {
     stream_t stream;
-    size_t first, t;
+    size_t t;
     stream.models = models;
     stream.frames = (oracle_frame_t *)malloc(room * sizeof *stream.frames);
     stream.targets = (int16_t(*)[LABIAL_CHANNELS])malloc(room * sizeof *stream.targets);
@@ -258,7 +258,7 @@ size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_
     stream.count = oracle_units(models, input, count, stream.frames, room);
     oracle_targets(models, stream.frames, stream.count, stream.targets, stream.contacts);
     reach(&stream, told);
-    for (first = t = 0; t < stream.count; t++)
+    for (size_t first = t = 0; t < stream.count; t++)
         if (stream.frames[t].ends) {
             solve(&stream, first, t + 1 - first, motion);
             first = t + 1;

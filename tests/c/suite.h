@@ -26,6 +26,32 @@
 #define assert_in_range(found, low, high)                                                                              \
     suite_within(#found, (long long)(found), (long long)(low), (long long)(high), __FILE__, __LINE__)
 
+/* A call that must succeed. */
+#define assert_ok(call) assert_int_equal(call, LABIAL_OK)
+
+#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
+
+/* What a test draws: from a seed on, 32 bits, a number below a limit, and one from `low` to `high`. */
+static inline void draw_from(uint32_t seed)
+{
+    fixture_dice.state = fixture_seed(seed);
+}
+
+static inline uint32_t chance(void)
+{
+    return fixture_random(&fixture_dice);
+}
+
+static inline uint32_t below(uint32_t limit)
+{
+    return fixture_below(&fixture_dice, limit);
+}
+
+static inline int32_t between(int32_t low, int32_t high)
+{
+    return low + (int32_t)below((uint32_t)(high - low) + 1u);
+}
+
 /* Ends the line of a comparison, and the test. */
 static inline void suite_fail(const char *file, int line)
 {

@@ -147,19 +147,18 @@ static place_t place;
 
 static void begin(const labial_model_t *model)
 {
-    assert_int_equal(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL),
-                     LABIAL_OK);
+    assert_ok(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL));
 }
 
 /* Fills the queue with phonemes of three frames and more; ends the stream once `left` is 0. */
 static void feed(unsigned phonemes, unsigned *left)
 {
     while (*left > 0 && labial_room(&place.stream) > 0) {
-        assert_int_equal(labial_push(&place.stream, *left * 7u % phonemes, 60u + *left % 5u * 20u), LABIAL_OK);
+        assert_ok(labial_push(&place.stream, *left * 7u % phonemes, 60u + *left % 5u * 20u));
         --*left;
     }
     if (*left == 0)
-        assert_int_equal(labial_end(&place.stream), LABIAL_OK);
+        assert_ok(labial_end(&place.stream));
 }
 
 /* Would catch a channel whose turn comes in another's tick, twice or never: ticks that do more than their share. */
@@ -204,10 +203,9 @@ static int next_work(unsigned ms, unsigned *left, work_t *work)
     const uint8_t was = place.stream.next.halves;
     const labial_shape_t *const spoken = place.stream.shape;
     for (; *left > 0 && labial_room(&place.stream) > 0; --*left)
-        assert_int_equal(labial_push(&place.stream, *left * 7u % SPEECH_EN_PHONEMES, ms ? ms : 60u + *left % 5u * 20u),
-                         LABIAL_OK);
+        assert_ok(labial_push(&place.stream, *left * 7u % SPEECH_EN_PHONEMES, ms ? ms : 60u + *left % 5u * 20u));
     if (*left == 0)
-        assert_int_equal(labial_end(&place.stream), LABIAL_OK);
+        assert_ok(labial_end(&place.stream));
     if (labial_tick(&place.stream) == LABIAL_DONE)
         return 0;
     work->begun = place.stream.shape != spoken;

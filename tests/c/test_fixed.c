@@ -49,7 +49,7 @@ static const int32_t corners[] = {
     98304, 1 << 20, 0x7fff8000, 0x7fffffff, -0x7fffffff, INT32_MIN, INT32_MIN + 1, 0x55555555
 };
 
-#define CORNERS (sizeof corners / sizeof corners[0])
+#define CORNERS COUNT_OF(corners)
 
 /* floor((a b + offset) / 2^shift) modulo 2^32, by division. */
 static uint32_t wanted_product(int32_t a, int32_t b, int64_t offset, unsigned shift)
@@ -127,7 +127,7 @@ TEST(weights_are_minifloats)
 TEST(steps_are_scaled_and_rounded)
 {
     static const uint16_t scales[] = { 0, 1, 127, 128, 255, 256, 257, 16383, 32767, 65535 };
-    for (unsigned i = 0; i < sizeof scales / sizeof scales[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(scales); i++)
         for (int steps = -4096; steps <= 4096; steps++)
             assert_int_equal(labial_scaled(steps, scales[i]), (int)floor(steps * (double)scales[i] / 256.0 + 0.5));
 }

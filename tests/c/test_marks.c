@@ -61,9 +61,9 @@ TEST(every_character_is_a_mark_or_none)
     static const unsigned stress[] = { 0x2c8, 0x2cc, 0x294 };
     for (unsigned point = 0x80; point < 0x10000; point++) {
         char text[8] = "B";
-        const int is_mark = (point >= 0x300 && point <= 0x36f && point != 0x327) ||
-                            is_one_of(point, signs, sizeof signs / sizeof signs[0]);
-        const int leads = is_mark || is_one_of(point, stress, sizeof stress / sizeof stress[0]);
+        const int is_mark =
+            (point >= 0x300 && point <= 0x36f && point != 0x327) || is_one_of(point, signs, COUNT_OF(signs));
+        const int leads = is_mark || is_one_of(point, stress, COUNT_OF(stress));
         const size_t bytes = encode(point, text + 1);
         if ((find(text, 1 + bytes) == B) != is_mark)
             fail_msg("U+%04X behind a label", point);

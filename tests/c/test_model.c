@@ -20,13 +20,13 @@ SETUP(setup)
 /* Would catch a rule that is stricter than the header: exporters could not write such models. */
 TEST_AFTER(setup, accepts_the_fixtures)
 {
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     fixture_plain(&f);
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     fixture_laughter(&f);
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     fixture_slow(&f);
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
 }
 
 TEST_AFTER(setup, refuses_null)
@@ -68,7 +68,7 @@ TEST_AFTER(setup, models_have_the_channels_that_they_solve)
 {
     fixture_narrow(&f, fixture_mirrored);
     assert_int_equal(f.model.channel_count, 8);
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     TRY(const uint32_t *, f.model.kernels, NULL, LABIAL_ERROR_NULL);
     TRY(const labial_protrusion_t *, f.model.protrusion, NULL, LABIAL_ERROR_NULL);
     for (unsigned c = 0; c < 8; c++)
@@ -165,7 +165,7 @@ TEST_AFTER(setup, accepts_transitions_of_the_largest_model)
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
         f.channels[c].transitions = transitions;
     f.model.predecessor_fours = LABIAL_STATES_MAX / 4;
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     REFUSED(uint8_t, transitions[LABIAL_STATES_MAX * LABIAL_STATES_MAX - 1].predecessor, LABIAL_STATES_MAX);
     REFUSED(uint8_t, f.model.state_count, LABIAL_STATES_MAX - 1);
 }
@@ -287,7 +287,7 @@ TEST_AFTER(setup, accepts_the_largest_counts)
     f.model.phoneme_count = LABIAL_PHONEMES_MAX;
     f.model.class_count = LABIAL_CLASSES_MAX;
     f.model.component_count = COMPONENTS;
-    assert_int_equal(labial_model_check(&f.model), LABIAL_OK);
+    assert_ok(labial_model_check(&f.model));
     REFUSED(uint16_t, f.model.component_count, COMPONENTS - 1);
     REFUSED(uint8_t, phonemes[LABIAL_PHONEMES_MAX - 1].viseme_class, LABIAL_CLASSES_MAX);
 }

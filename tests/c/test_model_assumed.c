@@ -60,7 +60,7 @@ SETUP(setup)
     model.floors = floors;
     model.contacts = contacts;
     model.channels = channels;
-    assert_int_equal(labial_model_check(&model), LABIAL_OK);
+    assert_ok(labial_model_check(&model));
     return 0;
 }
 

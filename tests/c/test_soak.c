@@ -101,9 +101,8 @@ static void begin_day(uint32_t first)
 {
     memset(&day, 0, sizeof day);
     guard(0);
-    assert_int_equal(labial_init(&day.memory.stream, &speech_en, day.memory.workspace, WORKSPACE, on_frame, &day),
-                     LABIAL_OK);
-    assert_int_equal(labial_exact(&day.memory.stream, 1), LABIAL_OK);
+    assert_ok(labial_init(&day.memory.stream, &speech_en, day.memory.workspace, WORKSPACE, on_frame, &day));
+    assert_ok(labial_exact(&day.memory.stream, 1));
     day.random.state = 20;
     day.memory.stream.frame = day.next = first; /* no day is long enough to come there otherwise */
 }
@@ -126,7 +125,7 @@ static int tick(void)
 
 static void push(unsigned phoneme, uint32_t ms)
 {
-    assert_int_equal(labial_push(&day.memory.stream, phoneme, ms), LABIAL_OK);
+    assert_ok(labial_push(&day.memory.stream, phoneme, ms));
     day.ms += ms;
 }
 
@@ -144,14 +143,13 @@ static void feed(void)
     }
     if (day.phonemes == 0) {
         day.laughing = fixture_below(&day.random, 3) == 0;
-        assert_int_equal(labial_use(&day.memory.stream, models[day.laughing]), LABIAL_OK);
+        assert_ok(labial_use(&day.memory.stream, models[day.laughing]));
         day.phonemes = day.laughing ? 0 : 1u + fixture_below(&day.random, 60);
         day.laughs += (unsigned)day.laughing;
         if (day.laughing)
-            assert_int_equal(labial_laugh_init(&day.laugh, fixture_below(&day.random, 6000),
-                                               fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
-                                               fixture_random(&day.random)),
-                             LABIAL_OK);
+            assert_ok(labial_laugh_init(&day.laugh, fixture_below(&day.random, 6000),
+                                        fixture_below(&day.random, LABIAL_LAUGH_FULL + 1u),
+                                        fixture_random(&day.random)));
         return;
     }
     day.phonemes--;
@@ -168,7 +166,7 @@ static void feed(void)
 
 static void restart(void)
 {
-    assert_int_equal(labial_restart(&day.memory.stream), LABIAL_OK);
+    assert_ok(labial_restart(&day.memory.stream));
     day.ms = day.frames = 0;
     day.phonemes = 0;
     day.laughing = 0;
@@ -178,7 +176,7 @@ static void restart(void)
 static void end(void)
 {
     uint64_t ticks = held() + labial_latency(&day.memory.stream).delay;
-    assert_int_equal(labial_end(&day.memory.stream), LABIAL_OK);
+    assert_ok(labial_end(&day.memory.stream));
     while (tick() != LABIAL_DONE)
         assert_true(ticks-- > 0);
     assert_true(held() == 0);
@@ -197,15 +195,15 @@ static void cancel(void)
 {
     uint32_t ms = fixture_below(&day.random, 600);
     uint64_t left = ease_frames(ms);
-    assert_int_equal(labial_cancel(&day.memory.stream, ms), LABIAL_OK);
+    assert_ok(labial_cancel(&day.memory.stream, ms));
     if (fixture_below(&day.random, 3) == 0) {
-        assert_int_equal(tick(), LABIAL_OK);
+        assert_ok(tick());
         ms = fixture_below(&day.random, 600);
         left = ease_frames(ms);
-        assert_int_equal(labial_cancel(&day.memory.stream, ms), LABIAL_OK);
+        assert_ok(labial_cancel(&day.memory.stream, ms));
     }
     for (; left > 0; left--)
-        assert_int_equal(tick(), LABIAL_OK);
+        assert_ok(tick());
     assert_int_equal(tick(), LABIAL_DONE);
     day.cancels++;
     restart();
@@ -215,13 +213,13 @@ static void cancel(void)
 static size_t speak(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 {
     day.kept = kept;
-    assert_int_equal(labial_use(&day.memory.stream, &speech_en), LABIAL_OK);
+    assert_ok(labial_use(&day.memory.stream, &speech_en));
     for (unsigned i = 0; i < 20; i++)
         push((i * 7u + 3u) % SPEECH_EN_PHONEMES, 60u + i % 5u * 20u);
-    assert_int_equal(labial_use(&day.memory.stream, &laughter_synthetic), LABIAL_OK);
+    assert_ok(labial_use(&day.memory.stream, &laughter_synthetic));
     for (unsigned i = 0; i < 10; i++)
         push(i % LABIAL_LAUGH_PHONEMES, 110);
-    assert_int_equal(labial_end(&day.memory.stream), LABIAL_OK);
+    assert_ok(labial_end(&day.memory.stream));
     while (tick() != LABIAL_DONE) {
     }
     const size_t frames = (size_t)day.frames;
@@ -379,13 +377,12 @@ static void begin_shift(uint32_t first)
     memset(&shift, 0, sizeof shift);
     guard_toy(0);
     shift.random.state = 36;
-    assert_int_equal(labial_rig_check(&rig), LABIAL_OK);
-    assert_int_equal(labial_face_init(&toy.face, &rig, LABIAL_HEAR_FPS, AHEAD, toy.room, sizeof toy.room), LABIAL_OK);
-    assert_int_equal(labial_hear_init(&toy.hear, &hear_fixture, SOUND_RATE, 1, toy.workspace, sizeof toy.workspace,
-                                      on_heard, &toy.face),
-                     LABIAL_OK);
-    assert_int_equal(labial_hear_classes(&toy.hear, on_class), LABIAL_OK);
-    assert_int_equal(labial_beside_init(&toy.player, SERVOS, SOUND_RATE, toy.ring, sizeof toy.ring), LABIAL_OK);
+    assert_ok(labial_rig_check(&rig));
+    assert_ok(labial_face_init(&toy.face, &rig, LABIAL_HEAR_FPS, AHEAD, toy.room, sizeof toy.room));
+    assert_ok(labial_hear_init(&toy.hear, &hear_fixture, SOUND_RATE, 1, toy.workspace, sizeof toy.workspace, on_heard,
+                               &toy.face));
+    assert_ok(labial_hear_classes(&toy.hear, on_class));
+    assert_ok(labial_beside_init(&toy.player, SERVOS, SOUND_RATE, toy.ring, sizeof toy.ring));
     for (unsigned i = 0; i < SERVOS; i++)
         shift.values[i] = servos[i].neutral;
     toy.hear.frame = toy.hear.first = shift.heard = shift.told = first;
@@ -397,20 +394,20 @@ static void hear_frame(void)
     int16_t samples[SAMPLES];
     for (unsigned i = 0; i < SAMPLES; i++, shift.at++)
         samples[i] = hear_sound(3u + shift.at / 24000u % 5u, shift.at, &shift.state);
-    assert_int_equal(labial_hear_push(&toy.hear, samples, SAMPLES), LABIAL_OK);
+    assert_ok(labial_hear_push(&toy.hear, samples, SAMPLES));
 }
 
 /* A sound of its own, as long as a sentence; returns its frames. */
 static size_t hear_sentence(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 {
-    assert_int_equal(labial_hear_set_level(&toy.hear, LABIAL_HEAR_LEVEL_BEGIN), LABIAL_OK);
+    assert_ok(labial_hear_set_level(&toy.hear, LABIAL_HEAR_LEVEL_BEGIN));
     shift.kept = kept;
     shift.frames = 0;
     shift.at = 0;
     shift.state = 1;
     for (unsigned i = 0; i < SENTENCE - 20u; i++)
         hear_frame();
-    assert_int_equal(labial_hear_end(&toy.hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&toy.hear));
     assert_int_equal(shift.told, shift.heard - (uint32_t)(shift.frames - (SENTENCE - 20u)));
     shift.kept = NULL;
     return shift.frames;
@@ -469,13 +466,12 @@ static void play_beside(void)
         shift.sent[shift.frame % KEPT][i] = (uint8_t)(shift.values[i] & 0xff);
     shift.frame++;
     if (fixture_below(&shift.random, 10) > 0)
-        assert_int_equal(send_frames(shift.frame - shift.known < REPEATED ? shift.frame - shift.known : REPEATED, 0),
-                         LABIAL_OK);
+        assert_ok(send_frames(shift.frame - shift.known < REPEATED ? shift.frame - shift.known : REPEATED, 0));
     else
         shift.lost++;
     const int result = labial_beside_tick(&toy.player, heard * SAMPLES + fixture_below(&shift.random, SAMPLES), values);
     if (heard - shift.known < 0x80000000u) {
-        assert_int_equal(result, LABIAL_OK);
+        assert_ok(result);
         assert_memory_equal(values, shift.sent[heard % KEPT], SERVOS);
     }
 }
@@ -484,10 +480,10 @@ static void play_beside(void)
 static void interrupt(void)
 {
     const uint32_t ms = fixture_below(&shift.random, 600);
-    assert_int_equal(labial_hear_cancel(&toy.hear, ms), LABIAL_OK);
+    assert_ok(labial_hear_cancel(&toy.hear, ms));
     shift.told = shift.heard;
-    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
-    assert_int_equal(labial_face_cancel(&toy.face, ms), LABIAL_OK);
+    assert_ok(labial_hear_restart(&toy.hear));
+    assert_ok(labial_face_cancel(&toy.face, ms));
     assert_int_equal(send_frames(0, 1), LABIAL_CANCELLED);
     shift.known = shift.frame;
     shift.cancels++;
@@ -498,17 +494,17 @@ static void compare_sentence(int16_t first[SENTENCE][LABIAL_CHANNELS], size_t fr
 {
     static int16_t again[SENTENCE][LABIAL_CHANNELS];
     unsigned ticks = 0;
-    assert_int_equal(labial_hear_end(&toy.hear), LABIAL_OK);
+    assert_ok(labial_hear_end(&toy.hear));
     while (move_servos() != LABIAL_DONE)
         assert_true(++ticks < AHEAD + LABIAL_FACE_HOLD + LABIAL_FACE_EASE + LABIAL_FACE_TRAVEL(500, 60, 20));
     assert_int_equal(shift.values[0], 1400);
     assert_int_equal(shift.values[1], 90);
     shift.told = shift.heard; /* the way to rest has no class */
-    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&toy.hear));
     assert_int_equal(hear_sentence(again), frames);
     assert_memory_equal(again, first, frames * sizeof first[0]);
     shift.told = shift.heard;
-    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&toy.hear));
 }
 
 /* Some hours from a time of the clock and from the number of a frame on. */
@@ -521,7 +517,7 @@ static void work(unsigned minutes, uint32_t now, uint32_t frame)
     const size_t frames = hear_sentence(first);
     assert_in_range(frames, SENTENCE - 20, SENTENCE);
     shift.told = shift.heard;
-    assert_int_equal(labial_hear_restart(&toy.hear), LABIAL_OK);
+    assert_ok(labial_hear_restart(&toy.hear));
     begin_numbers(0u - HOUR / 2u);
     while (passed < length) {
         const uint32_t chance = fixture_below(&shift.random, 4096);
@@ -612,7 +608,7 @@ static int tell_words(uint32_t identity, unsigned from, unsigned until)
     memset(items, 0, sizeof items);
     for (unsigned i = from; i < until; i++) {
         labial_voice_item_t *const one = &items[message.count++];
-        one->text = vocabulary[(i * 7u + 3u) % (sizeof vocabulary / sizeof *vocabulary)];
+        one->text = vocabulary[(i * 7u + 3u) % (COUNT_OF(vocabulary))];
         one->size = (uint16_t)strlen(one->text);
         one->start = (uint64_t)(i > 0 ? talk.ends[i - 1u] : 100u) * 1000u;
         one->end = (uint64_t)talk.ends[i] * 1000u;
@@ -655,7 +651,7 @@ static void begin_answer(unsigned words, uint32_t shortest, uint32_t longest)
     for (unsigned i = 0; i < words; i++)
         talk.ends[i] = end +=
             shortest + (longest > shortest ? fixture_below(&talk.random, longest - shortest) : i % 5u * 60u);
-    assert_int_equal(labial_voice_begin(&agent.voice, talk.begins, talk.identity), LABIAL_OK);
+    assert_ok(labial_voice_begin(&agent.voice, talk.begins, talk.identity));
 }
 
 /* Waits until nothing moves, and a while longer, in which the face is at rest. */
@@ -683,8 +679,8 @@ static unsigned answer(int16_t kept[ANSWER][LABIAL_CHANNELS])
     memset(kept, 0, ANSWER * sizeof kept[0]);
     follow((uint32_t)(1000u - talk.now % 1000u)); /* streams are made from whole seconds on */
     begin_answer(12, 120, 0);
-    assert_int_equal(tell_words(talk.identity, 0, talk.words), LABIAL_OK);
-    assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+    assert_ok(tell_words(talk.identity, 0, talk.words));
+    assert_ok(labial_voice_finish(&agent.voice));
     talk.kept = kept;
     talk.frames = 0;
     for (unsigned i = 0; i < ANSWER; i++)
@@ -702,7 +698,7 @@ static void go_on(void)
     const uint32_t chance = fixture_below(&talk.random, 64), before = talk.identity;
     unsigned more = talk.told + 1u + fixture_below(&talk.random, 4);
     if (chance == 0) {
-        assert_int_equal(labial_voice_cancel(&agent.voice, fixture_below(&talk.random, 600)), LABIAL_OK);
+        assert_ok(labial_voice_cancel(&agent.voice, fixture_below(&talk.random, 600)));
         come_to_rest();
         assert_int_equal(tell_words(before, talk.told, talk.words), LABIAL_CANCELLED);
         talk.words = 0;
@@ -710,16 +706,16 @@ static void go_on(void)
         return;
     }
     more = more < talk.words ? more : talk.words;
-    assert_int_equal(tell_words(talk.identity, talk.told, more), LABIAL_OK);
+    assert_ok(tell_words(talk.identity, talk.told, more));
     if (chance < 8) {
-        assert_int_equal(tell_words(talk.identity, talk.told, more), LABIAL_OK);
+        assert_ok(tell_words(talk.identity, talk.told, more));
         talk.twice++;
     }
     talk.told = more;
     if (talk.told < talk.words)
         return;
     if (chance < 32)
-        assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+        assert_ok(labial_voice_finish(&agent.voice));
     while (talk.now < talk.begins + talk.ends[talk.words - 1u] + LABIAL_VOICE_REST)
         follow(20);
     assert_true(talk.moved > 0);
@@ -738,8 +734,8 @@ TEST(answers_go_on_for_hours)
     memset(&talk, 0, sizeof talk);
     guard_agent(0);
     talk.random.state = 34;
-    assert_int_equal(labial_voice_init(&agent.voice, &speech_en, agent.memory, sizeof agent.memory), LABIAL_OK);
-    assert_int_equal(labial_voice_words(&agent.voice, &words_en, NULL), LABIAL_OK);
+    assert_ok(labial_voice_init(&agent.voice, &speech_en, agent.memory, sizeof agent.memory));
+    assert_ok(labial_voice_words(&agent.voice, &words_en, NULL));
     agent.voice.serial = 0u - 1000u; /* no day has so many answers */
     begin = ((UINT64_C(1) << 32) - length / 2u) / 20u * 20u;
     follow((uint32_t)begin);
@@ -754,7 +750,7 @@ TEST(answers_go_on_for_hours)
             follow(fixture_below(&talk.random, 8) == 0 ? fixture_below(&talk.random, 300) : 20u);
         if ((talk.now - begin) / 3600000u > hours && talk.words == 0) {
             hours++;
-            assert_int_equal(labial_voice_finish(&agent.voice), LABIAL_OK);
+            assert_ok(labial_voice_finish(&agent.voice));
             come_to_rest();
             assert_int_equal(answer(again), frames);
             for (unsigned i = 0; i < frames; i++) /* streams from another second on search a little otherwise */

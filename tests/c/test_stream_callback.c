@@ -55,17 +55,15 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 
 static void push_some(labial_t *stream)
 {
-    assert_int_equal(labial_push(stream, FIXTURE_A, 200), LABIAL_OK);
-    assert_int_equal(labial_push(stream, FIXTURE_P, 60), LABIAL_OK);
-    assert_int_equal(labial_push(stream, FIXTURE_O, 300), LABIAL_OK);
+    assert_ok(labial_push(stream, FIXTURE_A, 200));
+    assert_ok(labial_push(stream, FIXTURE_P, 60));
+    assert_ok(labial_push(stream, FIXTURE_O, 300));
 }
 
 static void open(actor_t *actor)
 {
-    assert_int_equal(
-        labial_init(&actor->stream, &rich.model, actor->workspace, sizeof actor->workspace, on_frame, actor),
-        LABIAL_OK);
-    assert_int_equal(labial_exact(&actor->stream, exact), LABIAL_OK);
+    assert_ok(labial_init(&actor->stream, &rich.model, actor->workspace, sizeof actor->workspace, on_frame, actor));
+    assert_ok(labial_exact(&actor->stream, exact));
 }
 
 /* Plays some phonemes, and ends the stream when a tick says that more must be known. */
@@ -118,7 +116,7 @@ static void push(actor_t *actor)
     assert_int_equal(labial_push(&actor->stream, FIXTURE_SPEECH_COUNT, 100), LABIAL_ERROR_PHONEME);
     assert_int_equal(labial_push(&actor->stream, 0, LABIAL_DURATION_MAX + 1u), LABIAL_ERROR_DURATION);
     for (unsigned i = labial_room(&actor->stream); i > 0; i--)
-        assert_int_equal(labial_push(&actor->stream, i % 2u ? FIXTURE_S : FIXTURE_A, 40), LABIAL_OK);
+        assert_ok(labial_push(&actor->stream, i % 2u ? FIXTURE_S : FIXTURE_A, 40));
     assert_int_equal(labial_push(&actor->stream, 0, 100), LABIAL_ERROR_FULL);
     assert_int_equal(labial_push(NULL, 0, 100), LABIAL_ERROR_NULL);
 }
@@ -128,16 +126,16 @@ static void use(actor_t *actor)
     assert_int_equal(labial_use(&actor->stream, NULL), LABIAL_ERROR_NULL);
     assert_int_equal(labial_use(&actor->stream, &other_rate.model), LABIAL_ERROR_FRAME_RATE);
 #if LABIAL_MODELS > 1
-    assert_int_equal(labial_use(&actor->stream, &laugh.model), LABIAL_OK);
-    assert_int_equal(labial_push(&actor->stream, FIXTURE_HA, 300), LABIAL_OK);
+    assert_ok(labial_use(&actor->stream, &laugh.model));
+    assert_ok(labial_push(&actor->stream, FIXTURE_HA, 300));
     assert_int_equal(labial_push(&actor->stream, FIXTURE_LAUGH_COUNT, 300), LABIAL_ERROR_PHONEME);
 #endif
 }
 
 static void end(actor_t *actor)
 {
-    assert_int_equal(labial_end(&actor->stream), LABIAL_OK);
-    assert_int_equal(labial_end(&actor->stream), LABIAL_OK);
+    assert_ok(labial_end(&actor->stream));
+    assert_ok(labial_end(&actor->stream));
     assert_int_equal(labial_push(&actor->stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
     assert_int_equal(labial_use(&actor->stream, &rich.model), LABIAL_ERROR_STATE);
     assert_int_equal(labial_room(&actor->stream), 0);
@@ -147,26 +145,26 @@ static void end(actor_t *actor)
 
 static void articulate(actor_t *actor)
 {
-    assert_int_equal(labial_articulation(&actor->stream, 40), LABIAL_OK);
+    assert_ok(labial_articulation(&actor->stream, 40));
     assert_int_equal(labial_articulation(NULL, 40), LABIAL_ERROR_NULL);
 }
 
 static void cancel(actor_t *actor)
 {
     assert_int_equal(labial_restart(&actor->stream), LABIAL_ERROR_STATE); /* the stream has not ended */
-    assert_int_equal(labial_cancel(&actor->stream, 100), LABIAL_OK);
+    assert_ok(labial_cancel(&actor->stream, 100));
     assert_int_equal(labial_push(&actor->stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
 }
 
 static void cancel_twice(actor_t *actor)
 {
-    assert_int_equal(labial_cancel(&actor->stream, 1000), LABIAL_OK);
-    assert_int_equal(labial_cancel(&actor->stream, 100), LABIAL_OK);
+    assert_ok(labial_cancel(&actor->stream, 1000));
+    assert_ok(labial_cancel(&actor->stream, 100));
 }
 
 static void restart(actor_t *actor) /* with the last frame of all */
 {
-    assert_int_equal(labial_restart(&actor->stream), LABIAL_OK);
+    assert_ok(labial_restart(&actor->stream));
     push_some(&actor->stream);
 }
 
@@ -178,7 +176,7 @@ static void begin_anew(actor_t *actor)
 
 static void tick(actor_t *actor)
 {
-    assert_int_equal(labial_tick(&actor->stream), LABIAL_OK);
+    assert_ok(labial_tick(&actor->stream));
 }
 
 TEST(each_call_does_the_same_within_and_without)
@@ -204,7 +202,7 @@ TEST(each_call_does_the_same_within_and_without)
 
 static void cancel_on_the_way(actor_t *actor)
 {
-    assert_int_equal(labial_cancel(&actor->stream, 100), LABIAL_OK);
+    assert_ok(labial_cancel(&actor->stream, 100));
 }
 
 /* Likewise while the face comes to rest, where all of that is past. */
@@ -237,16 +235,14 @@ TEST(ticks_within_ticks_deliver_in_order)
     exact = 1;
     play(&straight, look, 5, 0);
     memset(&nested, 0, sizeof nested);
-    assert_int_equal(
-        labial_init(&nested.stream, &rich.model, nested.workspace, sizeof nested.workspace, tick_on, &nested),
-        LABIAL_OK);
-    assert_int_equal(labial_exact(&nested.stream, exact), LABIAL_OK);
+    assert_ok(labial_init(&nested.stream, &rich.model, nested.workspace, sizeof nested.workspace, tick_on, &nested));
+    assert_ok(labial_exact(&nested.stream, exact));
     push_some(&nested.stream);
-    assert_int_equal(labial_end(&nested.stream), LABIAL_OK);
+    assert_ok(labial_end(&nested.stream));
     do
         result = labial_tick(&nested.stream);
     while (result == LABIAL_WAITING);
-    assert_int_equal(result, LABIAL_OK); /* of the first frame, after which all others were delivered */
+    assert_ok(result); /* of the first frame, after which all others were delivered */
     assert_int_equal(nested.count, PUSHED);
     assert_int_equal(labial_tick(&nested.stream), LABIAL_DONE);
     assert_memory_equal(nested.faps, straight.faps, PUSHED * sizeof nested.faps[0]);

@@ -24,10 +24,10 @@ static void begin(fixture_host_t *host, unsigned rate, size_t frames)
     const labial_model_t *model = &rich.model;
     unsigned guard = 0;
     rich.model.frames_per_second = (uint16_t)rate;
-    assert_int_equal(fixture_open(host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(host, &model, 1));
     fixture_stream(input, 80, FIXTURE_VOWELS, 23);
     for (unsigned i = 0; i < 80 && labial_room(host->stream) > 0; i++)
-        assert_int_equal(fixture_push(host, &input[i]), LABIAL_OK);
+        assert_ok(fixture_push(host, &input[i]));
     while (host->recorder.count < frames) {
         assert_true(guard++ < 1000);
         (void)fixture_tick(host);
@@ -43,7 +43,7 @@ static size_t drain(fixture_host_t *host)
         result = fixture_tick(host);
         if (result == LABIAL_DONE)
             break;
-        assert_int_equal(result, LABIAL_OK);
+        assert_ok(result);
         assert_true(host->recorder.count - before <= 1000);
     }
     if (host->complaint)
@@ -86,7 +86,7 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
         { 250, 3997, 1000 },
         { 250, 3996, 999 },
     };
-    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(cases); i++) {
         fixture_host_t host;
         begin(&host, cases[i].rate, 30);
         fixture_cancel(&host, cases[i].ms);
@@ -103,7 +103,7 @@ TEST(easing_is_monotonic_and_even)
 {
     static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
     unsigned moved = 0;
-    for (unsigned i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(lengths); i++) {
         const int n = (int)lengths[i];
         fixture_host_t host;
         begin(&host, FIXTURE_RATE, 40 + i);
@@ -155,48 +155,6 @@ TEST(cancel_before_the_first_frame_stays_neutral)
     }
 }
 
-/* Plays input[0 .. count) on a host that was restarted. */
-static void play_again(fixture_host_t *host, size_t count)
-{
-    assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
-}
-
-TEST(a_cancelled_stream_is_taken_up_from_neutral)
-{
-    fixture_host_t host;
-    begin(&host, FIXTURE_RATE, 30);
-    fixture_cancel(&host, 200);
-    assert_int_equal(drain(&host), 10);
-    fixture_restart(&host);
-    const size_t first = host.recorder.count;
-    play_again(&host, 20);
-    assert_true(fixture_is_exact(host.recorder.count - first, fixture_duration(input, 20), FIXTURE_RATE));
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        if (abs(host.recorder.frames[first][c]) > 100) /* shapes are up to 500 from neutral */
-            fail_msg("channel %u begins at %d", c, host.recorder.frames[first][c]);
-    fixture_close(&host);
-}
-
-/* Would catch state that one round leaves behind for the next. */
-TEST(many_rounds)
-{
-    fixture_host_t host;
-    fixture_random_t random = { 5 };
-    begin(&host, FIXTURE_RATE, 10);
-    fixture_cancel(&host, 0);
-    (void)drain(&host);
-    for (unsigned round = 0; round < 60; round++) {
-        const size_t before = host.recorder.count;
-        const uint32_t count = fixture_below(&random, 60);
-        fixture_restart(&host);
-        assert_int_equal(labial_room(host.stream), LABIAL_QUEUE);
-        fixture_stream(input, 60, (fixture_kind_t)(round % FIXTURE_HOUR), round);
-        play_again(&host, count);
-        assert_true(fixture_is_exact(host.recorder.count - before, fixture_duration(input, count), FIXTURE_RATE));
-    }
-    fixture_close(&host);
-}
-
 /* ---- Articulation ------------------------------------------------------------------------------------------------ */
 
 #define COUNT 60
@@ -206,14 +164,14 @@ static const labial_model_t *models[1];
 /* Plays `count` phonemes on a stream that is told `percent` before them. */
 static void play_at(fixture_host_t *host, unsigned percent, size_t count)
 {
-    assert_int_equal(labial_articulation(host->stream, percent), LABIAL_OK);
+    assert_ok(labial_articulation(host->stream, percent));
     assert_played(host, fixture_play(host, input, count, FIXTURE_FILL));
 }
 
 static void open_at(fixture_host_t *host, unsigned percent, size_t count)
 {
     models[0] = &rich.model;
-    assert_int_equal(fixture_open(host, models, 1), LABIAL_OK);
+    assert_ok(fixture_open(host, models, 1));
     play_at(host, percent, count);
 }
 
@@ -231,14 +189,7 @@ TEST(the_first_is_100_and_none_is_0)
     for (size_t t = 0; t < silent.recorder.count; t++)
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
             assert_int_equal(silent.recorder.frames[t][c], 0);
-    assert_int_equal(labial_init(silent.stream, models[0], silent.workspace, labial_workspace_size(models[0]),
-                                 fixture_record, &silent.recorder),
-                     LABIAL_OK);
-    assert_int_equal(labial_exact(silent.stream, 1), LABIAL_OK);
-    silent.ended = 0;
-    silent.recorder.next = 0;
-    silent.recorder.count = silent.begun = 0;
-    silent.on_way = 0;
+    assert_ok(fixture_open_again(&silent));
     assert_played(&silent, fixture_play(&silent, input, COUNT, FIXTURE_FILL));
     assert_int_equal(fixture_difference(&calm.recorder, &silent.recorder), -1);
     fixture_close(&silent);
@@ -253,7 +204,7 @@ TEST(more_than_the_most_is_the_most)
     fixture_host_t most, host;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 4);
     open_at(&most, LABIAL_ARTICULATION_MAX, COUNT);
-    for (unsigned i = 0; i < sizeof more / sizeof more[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(more); i++) {
         open_at(&host, more[i], COUNT);
         assert_int_equal(fixture_difference(&most.recorder, &host.recorder), -1);
         fixture_close(&host);
@@ -280,14 +231,14 @@ TEST(cancel_and_restart_keep_it)
         open_at(&host, way == 0 ? 60 : 170, 0);
         fixture_cancel(&host, 20);
         if (way == 1)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         while (fixture_tick(&host) != LABIAL_DONE)
             ;
         if (way == 2)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         fixture_restart(&host);
         if (way == 3)
-            assert_int_equal(labial_articulation(host.stream, 60), LABIAL_OK);
+            assert_ok(labial_articulation(host.stream, 60));
         assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_FILL));
         assert_int_equal(fixture_difference(&ever.recorder, &host.recorder), -1);
         fixture_close(&host);

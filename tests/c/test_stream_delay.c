@@ -32,7 +32,7 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
     size_t pushed = 0, taken = 0, moved = 0; /* ticks that took a frame or, after the end, let them run out */
     uint32_t quiet = 0;
     int wanted = LABIAL_OK, got;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     while (wanted != LABIAL_DONE) {
         uint32_t burst = quiet > 0 ? 0 : 1 + fixture_below(&random, 6);
         int is_moving;
@@ -90,8 +90,7 @@ TEST(changes_of_model_delay_nothing)
 {
 #if LABIAL_MODELS > 1
     const labial_model_t *const models[] = { &rich.model, &laugh.model };
-    uint32_t seed;
-    for (seed = 0; seed < FIXTURE_ROUNDS(40); seed++) {
+    for (uint32_t seed = 0; seed < FIXTURE_ROUNDS(40); seed++) {
         fixture_random_t random = { seed + 99 };
         fixture_stream(input, COUNT, seed % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, seed);
         for (size_t i = 1; i < COUNT; i++) {
@@ -118,14 +117,13 @@ TEST(an_hour_of_silence_is_played_as_it_comes)
     const labial_model_t *const model = &rich.model;
     const size_t hour = LABIAL_DURATION_MAX / 1000 * FIXTURE_RATE;
     fixture_host_t host;
-    size_t i;
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
-    assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_OK); /* 5 frames */
-    assert_int_equal(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX), LABIAL_OK);
-    for (i = 0; i < LABIAL_DELAY(FIXTURE_STRIDE); i++)
+    assert_ok(fixture_open(&host, &model, 1));
+    assert_ok(labial_push(host.stream, FIXTURE_A, 100)); /* 5 frames */
+    assert_ok(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX));
+    for (size_t i = 0; i < LABIAL_DELAY(FIXTURE_STRIDE); i++)
         assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
 #if LABIAL_REACH >= 4
-    for (i = 0; i < hour - 100; i++)
+    for (size_t i = 0; i < hour - 100; i++)
         if (fixture_tick(&host) != LABIAL_OK)
             fail_msg("frame %zu is late: %s", i, host.complaint ? host.complaint : "");
 #endif

@@ -36,7 +36,7 @@ static void commit_errors(labial_t *stream, int ended)
         assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
         assert_int_equal(labial_use(stream, &laugh.model), LABIAL_ERROR_STATE);
         assert_int_equal(labial_room(stream), 0);
-        assert_int_equal(labial_end(stream), LABIAL_OK); /* "also when called again" */
+        assert_ok(labial_end(stream)); /* "also when called again" */
         return;
     }
     assert_int_equal(labial_use(stream, &other_rate.model), LABIAL_ERROR_FRAME_RATE);
@@ -63,7 +63,7 @@ TEST(errors_leave_the_stream_unchanged)
     unsigned rounds = 0;
     int result = LABIAL_WAITING;
     assert_played(&calm, fixture_run(&calm, model, input, COUNT, FIXTURE_FILL));
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, &model, 1));
     while (result != LABIAL_DONE) {
         labial_latency_t before = labial_latency(host.stream);
         assert_true(rounds++ < 10000);
@@ -73,7 +73,7 @@ TEST(errors_leave_the_stream_unchanged)
         const labial_latency_t after = labial_latency(host.stream);
         assert_true(before.frames == after.frames && before.phonemes == after.phonemes);
         if (i < COUNT && labial_room(host.stream) > 0)
-            assert_int_equal(fixture_push(&host, &input[i++]), LABIAL_OK);
+            assert_ok(fixture_push(&host, &input[i++]));
         commit_errors(host.stream, host.ended);
         if (i == COUNT && !host.ended)
             fixture_end(&host);
@@ -90,12 +90,12 @@ TEST(the_queue_takes_as_many_as_it_says)
 {
     fixture_host_t host;
     const labial_model_t *model = &rich.model;
-    assert_int_equal(fixture_open(&host, &model, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, &model, 1));
     const unsigned room = labial_room(host.stream);
     assert_int_equal(room, LABIAL_QUEUE);
     for (unsigned i = 0; i < room; i++) {
         assert_int_equal(labial_room(host.stream), room - i);
-        assert_int_equal(labial_push(host.stream, i % FIXTURE_SPEECH_COUNT, 20), LABIAL_OK);
+        assert_ok(labial_push(host.stream, i % FIXTURE_SPEECH_COUNT, 20));
     }
     assert_int_equal(labial_room(host.stream), 0);
     commit_errors(host.stream, 0); /* LABIAL_ERROR_FULL among them */
@@ -125,7 +125,7 @@ TEST(nothing_works_before_init)
     static const int fills[] = { 0x00, 0xff, 0x01, 0xa5, 0x7f };
     labial_t *stream = (labial_t *)malloc(sizeof *stream);
     assert_non_null(stream);
-    for (unsigned i = 0; i < sizeof fills / sizeof fills[0]; i++) {
+    for (unsigned i = 0; i < COUNT_OF(fills); i++) {
         memset(stream, fills[i], sizeof *stream);
         check_refuses(stream, LABIAL_ERROR_STATE);
     }
@@ -170,9 +170,9 @@ TEST(a_failed_init_makes_the_stream_unusable)
         { &plain.model, bytes + 2, size, fixture_record, LABIAL_ERROR_WORKSPACE },
         { &older.model, workspace, size, fixture_record, LABIAL_ERROR_VERSION },
     };
-    for (unsigned i = 0; i < sizeof calls / sizeof calls[0]; i++) {
-        assert_int_equal(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_OK);
-        assert_int_equal(labial_push(stream, FIXTURE_A, 100), LABIAL_OK);
+    for (unsigned i = 0; i < COUNT_OF(calls); i++) {
+        assert_ok(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder));
+        assert_ok(labial_push(stream, FIXTURE_A, 100));
         const int got =
             labial_init(stream, calls[i].model, calls[i].workspace, calls[i].size, calls[i].callback, &recorder);
         if (got != calls[i].wanted)
@@ -231,13 +231,12 @@ TEST(memory_beside_the_workspace_is_untouched)
             fixture_narrow(model, fixture_mirrored);
         const uint32_t size = labial_workspace_size(&model->model) + extra;
         memset(memory, 0xc3, sizeof memory);
-        assert_int_equal(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder),
-                         LABIAL_OK);
+        assert_ok(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder));
         for (i = 0, k = 0; k < 10000 && labial_tick(&stream) != LABIAL_DONE; k++) {
             for (; i < COUNT && labial_room(&stream) > 0; i++)
-                assert_int_equal(labial_push(&stream, input[i].phoneme, input[i].ms), LABIAL_OK);
+                assert_ok(labial_push(&stream, input[i].phoneme, input[i].ms));
             if (i == COUNT)
-                assert_int_equal(labial_end(&stream), LABIAL_OK);
+                assert_ok(labial_end(&stream));
         }
         assert_true(recorder.count > 100);
         for (k = 0; k < sizeof memory; k++)
@@ -265,15 +264,15 @@ TEST(a_model_of_more_channels_needs_room)
                      LABIAL_ERROR_WORKSPACE);
     assert_int_equal(labial_init(&stream, &narrow.model, memory, size - 4, fixture_record, &recorder),
                      LABIAL_ERROR_WORKSPACE);
-    assert_int_equal(labial_init(&stream, &narrow.model, memory, size, fixture_record, &recorder), LABIAL_OK);
+    assert_ok(labial_init(&stream, &narrow.model, memory, size, fixture_record, &recorder));
     assert_int_equal(labial_use(&stream, &rich.model), LABIAL_ERROR_WORKSPACE);
-    assert_int_equal(labial_push(&stream, FIXTURE_A, 100), LABIAL_OK); /* unchanged, of the first model */
-    assert_int_equal(labial_init(&stream, &narrow.model, memory, wide - 1, fixture_record, &recorder), LABIAL_OK);
+    assert_ok(labial_push(&stream, FIXTURE_A, 100)); /* unchanged, of the first model */
+    assert_ok(labial_init(&stream, &narrow.model, memory, wide - 1, fixture_record, &recorder));
     assert_int_equal(labial_use(&stream, &rich.model), LABIAL_ERROR_WORKSPACE);
-    assert_int_equal(labial_init(&stream, &narrow.model, memory, wide, fixture_record, &recorder), LABIAL_OK);
-    assert_int_equal(labial_use(&stream, &rich.model), LABIAL_OK);
-    assert_int_equal(labial_init(&stream, &rich.model, memory, wide, fixture_record, &recorder), LABIAL_OK);
-    assert_int_equal(labial_use(&stream, &narrow.model), LABIAL_OK);
+    assert_ok(labial_init(&stream, &narrow.model, memory, wide, fixture_record, &recorder));
+    assert_ok(labial_use(&stream, &rich.model));
+    assert_ok(labial_init(&stream, &rich.model, memory, wide, fixture_record, &recorder));
+    assert_ok(labial_use(&stream, &narrow.model));
 }
 
 /* More models than LABIAL_MODELS: refused while phonemes of all others are held, accepted once ticks have taken up those
@@ -284,22 +283,21 @@ TEST(too_many_models_are_refused_until_ticks_make_room)
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
     const unsigned frames = 100, still_needed = LABIAL_DELAY(FIXTURE_STRIDE);
     fixture_host_t host;
-    unsigned i, ticks = 0;
-    assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
+    unsigned ticks = 0;
+    assert_ok(fixture_open(&host, models, FIXTURE_MODELS));
     assert_in_range(LABIAL_MODELS, 1, FIXTURE_MODELS - 1); /* what this test is written for */
     if (LABIAL_QUEUE <= LABIAL_MODELS) {                   /* too short to hold phonemes of so many */
         fixture_close(&host);
         return;
     }
-    for (i = 0; i < LABIAL_MODELS; i++) {
-        assert_int_equal(labial_use(host.stream, models[i]), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE), LABIAL_OK);
+    for (unsigned i = 0; i < LABIAL_MODELS; i++) {
+        assert_ok(labial_use(host.stream, models[i]));
+        assert_ok(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE));
     }
-    for (i = 0; i < LABIAL_MODELS; i++)
-        assert_int_equal(labial_use(host.stream, models[i]), LABIAL_OK); /* known already */
+    for (unsigned i = 0; i < LABIAL_MODELS; i++)
+        assert_ok(labial_use(host.stream, models[i])); /* known already */
 #if LABIAL_MODELS > 1
-    assert_int_equal(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE),
-                     LABIAL_OK); /* so that the last begins */
+    assert_ok(labial_push(host.stream, 1, frames * 1000 / FIXTURE_RATE)); /* so that the last begins */
 #endif
     while (labial_use(host.stream, models[LABIAL_MODELS]) == LABIAL_ERROR_MODELS && ticks < 400) {
         (void)fixture_tick(&host);
@@ -307,14 +305,14 @@ TEST(too_many_models_are_refused_until_ticks_make_room)
     }
 #if LABIAL_MODELS > 1
     assert_int_equal(ticks, frames + still_needed);
-    assert_int_equal(labial_push(host.stream, FIXTURE_HA, 1000), LABIAL_OK);
+    assert_ok(labial_push(host.stream, FIXTURE_HA, 1000));
     assert_played(&host, fixture_play(&host, input, 0, FIXTURE_FILL));
     assert_int_equal(host.recorder.count, (LABIAL_MODELS + 1) * frames + 1000 * FIXTURE_RATE / 1000);
 #else
     assert_int_equal(ticks, 400); /* what follows the only phoneme is not known: it is never taken up but at the end */
     assert_played(&host, fixture_play(&host, input, 0, FIXTURE_FILL));
     fixture_restart(&host);
-    assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
+    assert_ok(labial_use(host.stream, models[1]));
     assert_in_range(still_needed, 1, 100);
 #endif
     fixture_close(&host);
@@ -328,26 +326,26 @@ TEST(models_that_nothing_was_pushed_of_make_room)
     fixture_host_t host;
     const labial_model_t *const models[FIXTURE_MODELS] = { &rich.model, &laugh.model, &third.model, &fourth.model };
     for (int entered = 0; entered < 3; entered++) {
-        assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
-        assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
+        assert_ok(fixture_open(&host, models, FIXTURE_MODELS));
+        assert_ok(labial_use(host.stream, models[1]));
+        assert_ok(labial_push(host.stream, 1, 1000));
+        assert_ok(labial_push(host.stream, 1, 1000));
         for (int ticks = 0; ticks < entered; ticks++)
             (void)fixture_tick(&host);
-        assert_int_equal(labial_use(host.stream, models[2]), LABIAL_OK); /* no frame was ever the first one's */
-        assert_int_equal(labial_push(host.stream, 1, 100), LABIAL_OK);
+        assert_ok(labial_use(host.stream, models[2])); /* no frame was ever the first one's */
+        assert_ok(labial_push(host.stream, 1, 100));
         assert_int_equal(labial_use(host.stream, models[0]), LABIAL_ERROR_MODELS);
         fixture_close(&host);
-        assert_int_equal(fixture_open(&host, models, FIXTURE_MODELS), LABIAL_OK);
-        assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK); /* nothing was pushed of the first */
-        assert_int_equal(labial_use(host.stream, models[2]), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, 1000), LABIAL_OK);
+        assert_ok(fixture_open(&host, models, FIXTURE_MODELS));
+        assert_ok(labial_use(host.stream, models[1])); /* nothing was pushed of the first */
+        assert_ok(labial_use(host.stream, models[2]));
+        assert_ok(labial_push(host.stream, 1, 1000));
+        assert_ok(labial_push(host.stream, 1, 1000));
         for (int ticks = 0; ticks < entered; ticks++)
             (void)fixture_tick(&host);
-        assert_int_equal(labial_use(host.stream, models[1]), LABIAL_OK);
-        assert_int_equal(labial_use(host.stream, models[3]), LABIAL_OK);
-        assert_int_equal(labial_push(host.stream, 1, 100), LABIAL_OK);
+        assert_ok(labial_use(host.stream, models[1]));
+        assert_ok(labial_use(host.stream, models[3]));
+        assert_ok(labial_push(host.stream, 1, 100));
         assert_int_equal(labial_use(host.stream, models[0]), LABIAL_ERROR_MODELS);
         fixture_close(&host);
     }

@@ -58,7 +58,7 @@ static void judge(const fixture_recorder_t *recorder, size_t first, size_t count
 static void compare(unsigned model_count, size_t count, const char *what, unsigned seed)
 {
     fixture_host_t host;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     host.random.state = seed + 1;
     if (fixture_play(&host, input, count, seed % 2 ? FIXTURE_FILL : FIXTURE_CHANCE) != 0)
         fail_msg("%s: %s", what, host.complaint);
@@ -123,7 +123,7 @@ TEST(channels_follow_those_of_the_same_frame)
         const uint8_t own = f->model.search_stride;
         f->model.search_stride = (uint8_t)stride;
         models[0] = &f->model;
-        for (unsigned k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        for (unsigned k = 0; k < COUNT_OF(kinds); k++) {
             fixture_stream(input, COUNT, kinds[k], stride);
             compare(1, COUNT, "followers", stride);
         }
@@ -137,12 +137,11 @@ TEST(two_models_are_the_sum_of_their_steps)
 {
     static const fixture_kind_t kinds[] = { FIXTURE_ONE_FRAME, FIXTURE_RANDOM, FIXTURE_VOWELS };
     fixture_random_t random = { 41 };
-    unsigned seed, i;
 #if LABIAL_MODELS > 1
     fixture_model_t *const firsts[] = { &computed, &mirrored, &rich, &slow };
     fixture_laughter(&narrow);
     fixture_narrow(&narrow, fixture_crossed);
-    for (seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(60); seed++) {
         fixture_model_t *const f = firsts[seed % 4], *const other = seed % 8 < 6 ? &laugh : &narrow;
         models[1] = &other->model;
         uint8_t model = 0;
@@ -150,7 +149,7 @@ TEST(two_models_are_the_sum_of_their_steps)
         f->model.search_stride = other->model.search_stride = (uint8_t)(1 + seed / 3 % LABIAL_SEARCH_STRIDE_MAX);
         models[0] = &f->model;
         fixture_stream(input, COUNT, kinds[seed % 3], seed);
-        for (i = 0; i < COUNT; i++) {
+        for (unsigned i = 0; i < COUNT; i++) {
             if (fixture_below(&random, 1 + seed / 6) == 0)
                 model = !model;
             input[i].model = i == 0 ? 0 : model;
@@ -174,7 +173,7 @@ TEST(rounds_are_the_sum_of_their_steps)
     fixture_host_t host;
     double held[LABIAL_CHANNELS];
     models[0] = &rich.model;
-    assert_int_equal(fixture_open(&host, models, 1), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, 1));
     for (unsigned round = 0; round < FIXTURE_ROUNDS(40); round++) {
         const size_t first = host.recorder.count, count = round % 7 * 4 + 1;
         fixture_stream(input, count, round % 2 ? FIXTURE_RANDOM : FIXTURE_ONE_FRAME, round);
@@ -214,7 +213,7 @@ static void tell_by_chance(uint32_t seed)
 static void compare_told(unsigned model_count, double tolerance, const char *what, unsigned seed)
 {
     fixture_host_t host;
-    assert_int_equal(fixture_open(&host, models, model_count), LABIAL_OK);
+    assert_ok(fixture_open(&host, models, model_count));
     tell_by_chance(seed + 1);
     if (fixture_play_told(&host, input, ARTICULATED, told, MAX_TOLD) != 0)
         fail_msg("%s, seed %u: %s", what, seed, host.complaint);
@@ -245,14 +244,13 @@ TEST(articulated_streams_are_the_sum_of_their_steps)
 TEST(two_articulated_models_are_the_sum_of_their_steps)
 {
     fixture_random_t random = { 43 };
-    unsigned seed, i;
 #if LABIAL_MODELS > 1
     models[0] = &rich.model;
     models[1] = &laugh.model;
-    for (seed = 0; seed < FIXTURE_ROUNDS(20); seed++) {
+    for (unsigned seed = 0; seed < FIXTURE_ROUNDS(20); seed++) {
         uint8_t model = 0;
         fixture_stream(input, ARTICULATED, FIXTURE_VOWELS, seed);
-        for (i = 0; i < ARTICULATED; i++) {
+        for (unsigned i = 0; i < ARTICULATED; i++) {
             if (fixture_below(&random, 4 + seed) == 0)
                 model = !model;
             input[i].model = i == 0 ? 0 : model;

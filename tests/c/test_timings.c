@@ -126,7 +126,7 @@ static int number_differs(unsigned long line, const char *number, const char *ex
     };
     char text[LINE_MAX_BYTES];
     int differing = 0;
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+    for (size_t i = 0; i < COUNT_OF(texts); i++) {
         const int length = snprintf(text, sizeof text, "%s%s%s", texts[i].before, number, texts[i].behind);
         differing += differs(line, text, (size_t)length, texts[i].format, expected);
     }
@@ -145,9 +145,9 @@ TEST(calls_do_as_the_header_says)
     labial_timing_t timing;
     size_t used;
     int wrong = labial_timings_init(NULL, LABIAL_TIMINGS_AUTO) != LABIAL_ERROR_NULL;
-    assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
+    assert_ok(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO));
     assert_int_equal(labial_timings_next(&timings, ";", 1, &used, &timing), LABIAL_WAITING); /* a comment of .pho */
-    assert_int_equal(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO), LABIAL_OK);
+    assert_ok(labial_timings_init(&timings, LABIAL_TIMINGS_AUTO));
     wrong |=
         labial_timings_init(&timings, (labial_timings_format_t)(LABIAL_TIMINGS_TEXTGRID + 1)) != LABIAL_ERROR_RANGE;
     wrong |= labial_timings_format(&timings) != LABIAL_TIMINGS_AUTO;
@@ -167,10 +167,10 @@ TEST(calls_do_as_the_header_says)
     wrong |= strcmp(labial_timings_format_name(LABIAL_TIMINGS_TEXTGRID), "textgrid") != 0;
     wrong |= strcmp(labial_timings_format_suffix(LABIAL_TIMINGS_LAB), ".lab") != 0;
     wrong |= strncmp(labial_timings_format_help(LABIAL_TIMINGS_PHO), "MBROLA", 6) != 0;
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    for (size_t i = 0; i < COUNT_OF(numbers); i++) {
         char label = '-';
         labial_timings_init(&timings, LABIAL_TIMINGS_TEXTGRID);
-        assert_int_equal(labial_timings_tier(&timings, names[i], numbers[i]), LABIAL_OK);
+        assert_ok(labial_timings_tier(&timings, names[i], numbers[i]));
         assert_int_equal(labial_timings_format(&timings), LABIAL_TIMINGS_TEXTGRID);
         const char *text = grid;
         for (size_t left = strlen(grid); left > 0; left -= used, text += used)
@@ -200,13 +200,13 @@ TEST(calls_do_as_the_header_says)
                    { "1 2 m 0.9989 w\n", LABIAL_ERROR_TIMINGS },
                    { "1 2 m 2.001 w\n", LABIAL_OK },
                    { "1 2 m 2.0011 w\n", LABIAL_ERROR_TIMINGS } };
-    for (size_t i = 0; i < sizeof apexes / sizeof apexes[0]; i++) {
+    for (size_t i = 0; i < COUNT_OF(apexes); i++) {
         labial_timings_init(&timings, LABIAL_TIMINGS_LAB);
         assert_int_equal(labial_timings_next(&timings, apexes[i].row, strlen(apexes[i].row), &used, &timing),
                          apexes[i].result);
     }
     labial_timings_init(&timings, LABIAL_TIMINGS_LAB);
-    assert_int_equal(labial_timings_next(&timings, "0 1 <laugh>\n", 12, &used, &timing), LABIAL_OK);
+    assert_ok(labial_timings_next(&timings, "0 1 <laugh>\n", 12, &used, &timing));
     assert_int_equal(timing.laugh, 128);
     static const char usual[] = "flite:0.1 <laugh 1> m:0.2\n";
     labial_timings_init(&timings, LABIAL_TIMINGS_FLITE);

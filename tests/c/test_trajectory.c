@@ -519,29 +519,6 @@ TEST(what_rests_stays_at_rest)
     }
 }
 
-/* A frame in contact alone, with nothing beside it that moves: exactly at its target, whatever its state holds it to. The
- * same frame without contact lies where the state and its share of the anchor say. */
-TEST(contact_holds_a_frame_at_its_target)
-{
-    fixture_random_t random = { 27 };
-    for (unsigned round = 0; round < FIXTURE_ROUNDS(500); round++) {
-        labial_factors_t factors[FRAMES];
-        int16_t motion[LABIAL_CHANNELS];
-        make(&random, 600, 4, 0, 0);
-        walk(&random, 0, 0);
-        require_accepted("contact", round);
-        for (int both = 0; both < 2; both++) {
-            const labial_state_t *s = &states[path[0]];
-            const double share = both ? 1.0 : (s->share + (s->share >= 128)) / 256.0;
-            contact[0] = (uint16_t)both;
-            go_forward(1, 1, factors);
-            labial_trajectory_back(factors, 0, 1, 0, 1, motion);
-            if (fabs(motion[0] - channel.centre - (s->mean + share * (target[0] - s->mean))) > 1.0)
-                fail_msg("round %u, contact %d: %d", round, both, motion[0]);
-        }
-    }
-}
-
 /* Solutions one after the other, some of a single frame: would catch a backward pass that carries something of the later
  * one into the earlier, and places of the ring of motion that are one off. */
 TEST(solutions_are_not_coupled)

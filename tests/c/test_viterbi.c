@@ -171,14 +171,14 @@ static unsigned check_path(const labial_search_t *search, unsigned last, unsigne
 TEST(paths_are_those_of_the_dense_programme)
 {
     fixture_random_t random = { 12 };
-    unsigned round, t, changed = 0, leaps = 0, units = 0;
-    for (round = 0; round < FIXTURE_ROUNDS(400); round++) {
+    unsigned changed = 0, leaps = 0, units = 0;
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(400); round++) {
         unsigned spans[STEPS], begin = 0;
         labial_search_t search;
         make(&random, 1 + fixture_below(&random, LABIAL_STATES_MAX), round % 3 ? 30 : 256,
              round % 2 ? LABIAL_POSITION_MAX : 4000, round % 4 < 2 ? 3000 : 100);
         memset(&search, 0x5a, sizeof search);
-        for (t = 0; t < STEPS; t++) {
+        for (unsigned t = 0; t < STEPS; t++) {
             spans[t] = 1 + fixture_below(&random, LABIAL_SEARCH_STRIDE_MAX);
             take_step(&search, t, begin, spans[t], fixture_below(&random, 10) == 0);
             check_scores(&search, steps[t].cost, steps[t].ends_unit, "dense");
@@ -197,140 +197,6 @@ TEST(paths_are_those_of_the_dense_programme)
 #else
     assert_int_equal(changed, 0);
 #endif
-}
-
-/* Every state is entered from `predecessor` at `cost`, in each of four transitions. */
-static void enter_from(unsigned state, unsigned predecessor, unsigned cost)
-{
-    for (unsigned i = 0; i < 4; i++)
-        transitions[4 * state + i] = (labial_transition_t){ (uint8_t)predecessor, (uint8_t)cost };
-}
-
-static void set_up_flat(unsigned states, unsigned fours)
-{
-    memset(emissions, 0, sizeof emissions);
-    memset(initials, 0, sizeof initials);
-    for (unsigned q = 0; q < LABIAL_STATES_MAX; q++)
-        emissions[q].gain = 0xf0; /* the least */
-    model.state_count = (uint8_t)states;
-    model.predecessor_fours = (uint8_t)fours;
-    channel.emissions = emissions;
-    channel.transitions = transitions;
-    channel.initials = initials;
-}
-
-#if LABIAL_SEARCHED == 8 /* what the cases are worked for */
-/* States around the nearest, at every place a position can have: between two, upon one, half-way, beyond both ends, upon
- * several that are alike. Would catch a search by halves that is one off, and a window that leaves the states. */
-TEST(the_window_lies_around_the_nearest_state)
-{
-    /* of 20 states at 100, 200, ..., with three at 1000; by hand */
-    static const struct {
-        int32_t position;
-        unsigned first;
-    } cases[] = { { -16383, 0 }, { 100, 0 },   { 450, 0 },   { 550, 0 },   { 551, 1 },   { 650, 1 },   { 651, 2 },
-                  { 950, 4 },    { 951, 5 },   { 1000, 5 },  { 1001, 7 },  { 1050, 7 },  { 1051, 8 },  { 1150, 8 },
-                  { 1250, 9 },   { 1251, 10 }, { 1400, 11 }, { 1500, 12 }, { 2000, 12 }, { 16383, 12 } };
-    set_up_flat(20, 1);
-    for (unsigned q = 0; q < 20; q++) {
-        emissions[q].mean = (int16_t)(q < 9 ? 100 * (q + 1) : q < 12 ? 1000 : 100 * (q - 1));
-        enter_from(q, q, 0);
-    }
-    for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        labial_search_t search;
-        labial_viterbi_step(&model, &channel, cases[i].position, LABIAL_BEGINS, &search);
-        if (search.first != cases[i].first || oracle_window(&model, &channel, cases[i].position) != cases[i].first)
-            fail_msg("position %d: the window begins with state %u, not %u", cases[i].position, search.first,
-                     cases[i].first);
-    }
-}
-#endif
-
-/* Costs at the limits of the leap: would catch `<` for `<=` or a leap of another size. The only ways into state 1 are its
- * transition from itself, which is 10 behind, and a leap. */
-TEST(a_leap_is_taken_where_no_edge_is_cheaper)
-{
-    static const struct {
-        uint8_t transition;
-        unsigned score, from;
-    } cases[] = { { 3, 6, 1 }, { 244, 247, 1 }, { 245, 248, 0 }, { 246, 248, 0 }, { 255, 248, 0 } };
-    unsigned i;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        labial_search_t search;
-        set_up_flat(2, 1);
-        initials[1] = 10;
-        enter_from(0, 0, 7);
-        enter_from(1, 1, cases[i].transition);
-        labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
-        labial_viterbi_step(&model, &channel, 0, 0, &search); /* state 0 costs 7 */
-        assert_int_equal(search.scores[0], 0);
-        assert_int_equal(search.scores[1], cases[i].score);
-#if LABIAL_LAG > 0
-        labial_viterbi_span(&search, 1);
-        assert_int_equal(search.back[0][1], cases[i].from);
-#endif
-    }
-}
-
-/* Would catch scores that wrap, and dead states that come to life: the largest costs there are, again and again. So far
- * from the target all states are alike, and the lowest is taken. */
-TEST(eight_bits_are_enough)
-{
-    labial_search_t search;
-    set_up_flat(LABIAL_STATES_MAX, 1);
-    for (unsigned q = 0; q < LABIAL_STATES_MAX; q++) {
-        emissions[q].mean = (int16_t)(q * 500 - 16000);
-        emissions[q].gain = 0x0f; /* the largest */
-        emissions[q].cost = initials[q] = 255;
-        enter_from(q, LABIAL_STATES_MAX - 1 - q, 255);
-    }
-    for (unsigned t = 0; t < STEPS; t++)
-        position[t] = t % 2 ? LABIAL_POSITION_MAX : -LABIAL_POSITION_MAX;
-    for (unsigned t = 0; t < STEPS; t++) {
-        take_step(&search, t, 0, 1, 0);
-        check_scores(&search, steps[t].cost, 0, "largest costs");
-        assert_int_equal(search.first + search.best, t % 2 ? LABIAL_STATES_MAX - LABIAL_SEARCHED : 0);
-    }
-}
-
-/* "The lowest at a tie": without it targets could differ. */
-TEST(ties_go_to_the_lower_state)
-{
-    labial_search_t search;
-    set_up_flat(5, 2);
-    for (unsigned q = 0; q < 5; q++) {
-        emissions[q].gain = fixture_gain_code(1850);
-        emissions[q].cost = initials[q] = 7;
-        for (unsigned t = 0; t < 8; t++)
-            transitions[q * 8 + t] = (labial_transition_t){ (uint8_t)(t < 5 ? t : 4), 9 };
-    }
-    for (unsigned t = 0; t < STEPS; t++)
-        position[t] = 50;
-    for (unsigned t = 0; t < STEPS; t++) {
-        take_step(&search, t, 0, 1, 0);
-        for (unsigned age = 0; age <= LABIAL_LAG && age <= t; age++)
-            assert_int_equal(labial_viterbi_state(&search, age), 0);
-    }
-}
-
-/* Farther than 1023 / 64 a state costs no more, and just within that what it says: a state that far and a cost of 8176
- * comes before one of 8160 + 17, and behind one of 8160 + 15. */
-TEST(far_states_cost_the_farthest)
-{
-    labial_search_t search = { 0 };
-    set_up_flat(2, 1);
-    emissions[0].mean = -2000;
-    emissions[0].gain = 0; /* z is 16 times the distance */
-    emissions[1].mean = 1022;
-    emissions[1].gain = 0x40; /* z is the distance */
-    emissions[1].cost = 17;
-    labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
-    labial_viterbi_span(&search, 1);
-    assert_int_equal(labial_viterbi_state(&search, 0), 0);
-    emissions[1].cost = 15;
-    labial_viterbi_step(&model, &channel, 0, LABIAL_BEGINS, &search);
-    labial_viterbi_span(&search, 1);
-    assert_int_equal(labial_viterbi_state(&search, 0), 1);
 }
 
 SUITE(NULL, NULL)

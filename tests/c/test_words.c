@@ -27,11 +27,10 @@ static const char *shown(const labial_word_t *word)
 {
     static char text[2048];
     size_t at = 0;
-    unsigned i;
     if (word->kind != LABIAL_WORDS_READ)
         return word->kind == LABIAL_WORDS_SILENT ? "silent" : word->kind == LABIAL_WORDS_UNKNOWN ? "unknown" : "?";
     text[0] = '\0';
-    for (i = 0; i < word->count; i++)
+    for (unsigned i = 0; i < word->count; i++)
         at += (size_t)snprintf(text + at, sizeof text - at, "%s%s%s:%u", i > 0 ? " " : "",
                                word->phonemes[i].first ? "_" : "",
                                labial_words_label(&words_en, word->phonemes[i].phoneme), word->phonemes[i].character);
@@ -41,15 +40,14 @@ static const char *shown(const labial_word_t *word)
 static void expect(const labial_words_own_t *own, const char *text, size_t size, const char *reading)
 {
     labial_word_t word;
-    assert_int_equal(read_text(own, text, size, &word), LABIAL_OK);
+    assert_ok(read_text(own, text, size, &word));
     assert_string_equal(shown(&word), reading);
 }
 
 /* Would catch any difference from the reference: in a question, an exception, a rule of texts. */
 TEST(texts_are_read_as_by_the_reference)
 {
-    unsigned i;
-    for (i = 0; i < sizeof readings / sizeof readings[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(readings); i++)
         expect(NULL, readings[i].text, strlen(readings[i].text), readings[i].reading);
 }
 
@@ -72,8 +70,7 @@ TEST(bytes_that_are_no_text_are_passed_over)
         { "\xed\xa0\x80", "silent" },     /* half a surrogate */
         { "\xff\xfe\x7f\x01\x1b", "silent" },
     };
-    unsigned i;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(cases); i++)
         expect(NULL, cases[i].text, strlen(cases[i].text), cases[i].reading);
     expect(NULL, "no\xffon", 5, "_N:0 OW:1 _AA:3 N:4");
     expect(NULL, "\0go\0", 4, "_G:1 OW:2");
@@ -85,14 +82,14 @@ TEST(characters_are_counted)
 {
     char longer[600];
     labial_word_t word;
-    assert_int_equal(read_text(NULL, "e\xcc\x81t\xc3\xa9", 6, &word), LABIAL_OK);
+    assert_ok(read_text(NULL, "e\xcc\x81t\xc3\xa9", 6, &word));
     assert_int_equal(word.characters, 4);
-    assert_int_equal(read_text(NULL, "a\xff\xff", 3, &word), LABIAL_OK);
+    assert_ok(read_text(NULL, "a\xff\xff", 3, &word));
     assert_int_equal(word.characters, 3);
-    assert_int_equal(read_text(NULL, "", 0, &word), LABIAL_OK);
+    assert_ok(read_text(NULL, "", 0, &word));
     assert_int_equal(word.characters, 0);
     memset(longer, '1', sizeof longer);
-    assert_int_equal(read_text(NULL, longer, sizeof longer, &word), LABIAL_OK);
+    assert_ok(read_text(NULL, longer, sizeof longer, &word));
     assert_int_equal(word.characters, LABIAL_WORDS_CHARACTERS);
     assert_int_equal(word.count, LABIAL_WORDS_PHONEMES);
 }
@@ -102,16 +99,15 @@ TEST(any_bytes_are_read)
 {
     static const char alphabet[] = "aeiouybcdt'SXRU0139.,-[<>@& \xc3\xa9\xe2\x80\x99\xd0\x9f\xff\xf0\x9f\x98\x80";
     fixture_random_t random = { 1 };
-    unsigned round, i;
-    for (round = 0; round < FIXTURE_ROUNDS(20000); round++) {
+    for (unsigned round = 0; round < FIXTURE_ROUNDS(20000); round++) {
         char text[300];
         const size_t size = fixture_below(&random, round % 50u ? 12u : (uint32_t)sizeof text);
         labial_word_t word;
-        for (i = 0; i < size; i++)
+        for (unsigned i = 0; i < size; i++)
             text[i] = alphabet[fixture_below(&random, sizeof alphabet)];
-        assert_int_equal(read_text(NULL, text, size, &word), LABIAL_OK);
+        assert_ok(read_text(NULL, text, size, &word));
         assert_true(word.characters <= size && (word.kind == LABIAL_WORDS_READ) == (word.count > 0));
-        for (i = 0; i < word.count; i++) {
+        for (unsigned i = 0; i < word.count; i++) {
             assert_in_range(word.phonemes[i].phoneme, 1, words_en.phoneme_count - 1);
             assert_in_range(word.phonemes[i].character, i > 0 ? word.phonemes[i - 1].character : 0,
                             word.characters - 1u);
@@ -129,8 +125,7 @@ TEST(own_words_come_first)
         { "\xd0\x9f", google, 1 }, { "nothing", google, 0 }, { "don't", google, 2 },
     };
     static const labial_words_entry_t five = { "5", google, 1 };
-    static const labial_words_own_t own = { entries, sizeof entries / sizeof entries[0] }, none = { NULL, 0 },
-                                    sums = { &five, 1 };
+    static const labial_words_own_t own = { entries, COUNT_OF(entries) }, none = { NULL, 0 }, sums = { &five, 1 };
     labial_word_t word;
     expect(NULL, "Google", 6, "_G:0 UW:1 G:3 AH:4 L:4");
     expect(&own, "Google", 6, "_G:0 UW:1 G:2 AH:3 L:4");
@@ -149,7 +144,7 @@ TEST(own_words_come_first)
     expect(&none, "go", 2, "_G:0 OW:1");
     expect(&sums, "$5", 2, "_G:1");
     expect(&sums, "$6", 2, "_S:0 IH:0 K:0 S:0 _D:1 AA:1 L:1 ER:1 Z:1");
-    assert_int_equal(read_text(&own, "many", 4, &word), LABIAL_OK);
+    assert_ok(read_text(&own, "many", 4, &word));
     assert_int_equal(word.count, LABIAL_WORDS_PHONEMES);
 }
 
@@ -164,8 +159,7 @@ static const char *answers(unsigned question, const char *text)
     static uint8_t trees[] = { 0, 0, 1, 0, 0, 0 };
     static labial_word_t word;
     labial_words_model_t tables = words_en;
-    unsigned i;
-    for (i = 0; i < 27; i++) {
+    for (unsigned i = 0; i < 27; i++) {
         roots[i] = 0;
         bases[i] = 0;
     }
@@ -182,7 +176,7 @@ static const char *answers(unsigned question, const char *text)
     tables.bases = bases;
     tables.buckets = buckets;
     tables.patches = patches;
-    assert_int_equal(labial_words_read(&tables, NULL, text, strlen(text), &word), LABIAL_OK);
+    assert_ok(labial_words_read(&tables, NULL, text, strlen(text), &word));
     return shown(&word);
 }
 
@@ -220,8 +214,7 @@ TEST(questions_are_those_of_the_format)
           "_B:0 B:1 B:2 B:3 B:4 B:5 B:6 B:7 B:8 B:9 B:10 B:11 B:12 B:13 B:14 B:15 B:16 "
           "B:17 B:18" },
     };
-    unsigned i;
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    for (unsigned i = 0; i < COUNT_OF(cases); i++)
         assert_string_equal(answers(cases[i].question, cases[i].text), cases[i].answers);
     assert_string_equal(answers(20, "\xc3\xa9t"), "_D:1"); /* tables without a label for the accent */
 }
@@ -235,8 +228,7 @@ TEST(patches_stay_within_the_word)
     labial_words_model_t tables = words_en;
     labial_word_t word;
     uint32_t hash = ((2166136261u ^ 7u) * 16777619u ^ 15u) * 16777619u * words_en.multiplier; /* of "go" */
-    unsigned i;
-    for (i = 0; i < 257; i++)
+    for (unsigned i = 0; i < 257; i++)
         buckets[i] = i > hash >> 24 ? 6 : 0;
     patches[0] = (uint8_t)(hash >> 16);
     patches[1] = (uint8_t)(hash >> 8);
@@ -245,18 +237,18 @@ TEST(patches_stay_within_the_word)
     patches[5] = 31; /* so is the last of 32 */
     tables.buckets = buckets;
     tables.patches = patches;
-    assert_int_equal(labial_words_read(&tables, NULL, "go", 2, &word), LABIAL_OK);
+    assert_ok(labial_words_read(&tables, NULL, "go", 2, &word));
     assert_string_equal(shown(&word), "_G:0");
     patches[1] ^= 1;
-    assert_int_equal(labial_words_read(&tables, NULL, "go", 2, &word), LABIAL_OK);
+    assert_ok(labial_words_read(&tables, NULL, "go", 2, &word));
     assert_string_equal(shown(&word), "_G:0 OW:1");
     patches[1] ^= 1;
     patches[2] = 0x80; /* the first letter is silent, and nothing follows */
     patches[3] = 0;
     patches[5] = 1;
-    for (i = 0; i < 257; i++)
+    for (unsigned i = 0; i < 257; i++)
         buckets[i] = i > hash >> 24 ? 4 : 0;
-    assert_int_equal(labial_words_read(&tables, NULL, "go", 2, &word), LABIAL_OK);
+    assert_ok(labial_words_read(&tables, NULL, "go", 2, &word));
     assert_string_equal(shown(&word), "_OW:1");
 }
 
@@ -296,11 +288,9 @@ TEST(words_know_those_before)
                   { "6C", "_S:0 IH:0 K:0 S:0 _S:1 IY:1", 0 } };
     labial_words_context_t context;
     labial_word_t word;
-    unsigned i;
     memset(&context, 0, sizeof context);
-    for (i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        assert_int_equal(labial_words_read_next(&words_en, NULL, &context, cases[i].text, strlen(cases[i].text), &word),
-                         LABIAL_OK);
+    for (unsigned i = 0; i < COUNT_OF(cases); i++) {
+        assert_ok(labial_words_read_next(&words_en, NULL, &context, cases[i].text, strlen(cases[i].text), &word));
         assert_string_equal(shown(&word), cases[i].reading);
         assert_int_equal(context.dropped, cases[i].dropped);
     }

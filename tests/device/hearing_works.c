@@ -24,10 +24,9 @@
 
 void labial_hear_sums(const int8_t *weights, const int16_t *x, unsigned columns, int32_t sums[4])
 {
-    unsigned row, column;
-    for (row = 0; row < 4u; row++) {
+    for (unsigned row = 0; row < 4u; row++) {
         sums[row] = 0;
-        for (column = 0; column < columns; column++)
+        for (unsigned column = 0; column < columns; column++)
             sums[row] += weights[WEIGHT(row, column)] * x[column];
     }
 }
@@ -45,10 +44,9 @@ static void add(uint8_t byte)
 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
-    unsigned k;
     (void)user;
     frames = frame + 1u;
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         add((uint8_t)((uint16_t)faps[k] & 255u));
         add((uint8_t)((uint16_t)faps[k] >> 8));
     }
@@ -58,13 +56,13 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 static int is_heard(unsigned row)
 {
     int16_t block[2u * BLOCK];
-    uint32_t state = 1, at, used = 0;
+    uint32_t state = 1, used = 0;
     frames = 0;
     crc = CHECKSUM_BEGIN;
     if (labial_hear_init(&hear, &hear_fixture, hears[row].rate, hears[row].channels, workspace, sizeof workspace,
                          on_frame, NULL) != LABIAL_OK)
         return 0;
-    for (at = 0; at < hears[row].samples; at++) {
+    for (uint32_t at = 0; at < hears[row].samples; at++) {
         const int32_t value = hear_sound(hears[row].sound, at, &state);
         block[used * hears[row].channels] = (int16_t)value;
         if (hears[row].channels == 2u)
@@ -83,20 +81,19 @@ static int sums_are_exact(void)
     static const int8_t ends[] = { 127, -127, 1, -1, 0 };
     static int8_t weights[4u * LABIAL_HEAR_UNITS_MAX + 1u];
     static int16_t x[LABIAL_HEAR_UNITS_MAX + 1u];
-    unsigned round, row, i;
-    for (round = 0; round < 200u; round++) {
+    for (unsigned round = 0; round < 200u; round++) {
         const unsigned columns = round < 50u ? LABIAL_HEAR_UNITS_MAX : 4u + 4u * (round % 32u), begin = round & 1u;
         int32_t sums[4], wanted[4] = { 0, 0, 0, 0 };
-        for (i = 0; i < columns; i++) {
+        for (unsigned i = 0; i < columns; i++) {
             x[begin + i] = (int16_t)(round % 3u == 0u ? -32768 : (i + round) % 7u == 0u ? -32768 : 32767);
-            for (row = 0; row < 4u; row++) {
+            for (unsigned row = 0; row < 4u; row++) {
                 const int8_t weight = ends[(round + row * (round / 5u) + i * (round / 25u)) % sizeof ends];
                 weights[begin + 8u * (i / 2u) + 4u * (row / 2u) + 2u * (i % 2u) + row % 2u] = weight;
                 wanted[row] += weight * x[begin + i];
             }
         }
         labial_hear_sums(weights + begin, x + begin, columns, sums);
-        for (row = 0; row < 4u; row++)
+        for (unsigned row = 0; row < 4u; row++)
             if (sums[row] != wanted[row])
                 return 0;
     }
@@ -105,12 +102,12 @@ static int sums_are_exact(void)
 
 int main(void)
 {
-    unsigned row, wrong = 0;
+    unsigned wrong = 0;
     if (!sums_are_exact()) {
         board_print("sums: FAILED\n");
         wrong++;
     }
-    for (row = 0; row < sizeof hears / sizeof hears[0]; row++)
+    for (unsigned row = 0; row < sizeof hears / sizeof hears[0]; row++)
         if (!is_heard(row)) {
             board_print("sound ");
             board_print_unsigned(row);

@@ -68,14 +68,14 @@ static void feed(uint32_t frame)
 static int beside(void)
 {
     static const uint32_t rates[] = { 8000, 11025, 48000 };
-    uint32_t i, k, sample, frame;
+    uint32_t sample, frame;
     uint8_t values[BYTES];
-    for (i = 0; i < 3; i++) {
+    for (uint32_t i = 0; i < 3; i++) {
         labial_beside_init(&player, BYTES, rates[i], player_memory, sizeof player_memory);
         labial_beside_limit(&player, 0, 100);
         labial_beside_limit(&player, 1, 255);
         sample = frame = 0;
-        for (k = 0; k < PACKETS; k++) {
+        for (uint32_t k = 0; k < PACKETS; k++) {
             if (draw(4) == 0 || k == 0)
                 feed(frame);
             add((uint32_t)labial_beside_tick(&player, sample, values));
@@ -113,17 +113,16 @@ static int32_t memory[LABIAL_FACE_SIZE(OUTPUTS, AHEAD) / 4];
 
 static void give(void)
 {
-    unsigned i;
     if (draw(4)) {
         int16_t faps[LABIAL_CHANNELS];
         const uint32_t touches = draw(3);
-        for (i = 0; i < LABIAL_CHANNELS; i++)
+        for (unsigned i = 0; i < LABIAL_CHANNELS; i++)
             faps[i] = (int16_t)((int32_t)draw(301) - 150);
         faps[4] = (int16_t)(touches ? faps[4] - 300 : 0);
         labial_face_frame(&face, 0, faps);
     } else {
         int32_t wanted[OUTPUTS];
-        for (i = 0; i < OUTPUTS; i++)
+        for (unsigned i = 0; i < OUTPUTS; i++)
             wanted[i] = 5000 + (int32_t)draw(3001);
         labial_face_values(&face, wanted);
     }
@@ -132,19 +131,19 @@ static void give(void)
 static int face_moves(void)
 {
     int32_t values[OUTPUTS];
-    uint32_t now = 0xffffc000u, i, k;
+    uint32_t now = 0xffffc000u;
     labial_face_init(&face, &rig, 50, AHEAD, memory, sizeof memory);
     labial_face_soft_start(&face, 10);
-    for (i = 0; i < CALLS; i++) {
+    for (uint32_t i = 0; i < CALLS; i++) {
         const uint32_t what = draw(60);
         if (what == 0)
             labial_face_cancel(&face, 181);
-        for (k = what == 1 ? draw(12) : what == 2 || i % 250u > 200u ? 0 : 1; k > 0; k--)
+        for (uint32_t k = what == 1 ? draw(12) : what == 2 || i % 250u > 200u ? 0 : 1; k > 0; k--)
             give();
         now += 15u + draw(11) + (what == 3 ? draw(200) : 0);
         while (labial_face_due(&face, now)) {
             add((uint32_t)labial_face_tick(&face, values));
-            for (k = 0; k < OUTPUTS; k++) {
+            for (uint32_t k = 0; k < OUTPUTS; k++) {
                 add((uint32_t)values[k]);
                 add((uint32_t)values[k] >> 8);
             }

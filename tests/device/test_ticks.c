@@ -47,33 +47,6 @@ static void the_delay_is_constant(void)
     tick(3, LABIAL_DONE);
 }
 
-/* Would catch a pause that holds up what comes before it: it is pushed whole when it begins. */
-static void pauses_hold_nothing_up(void)
-{
-    begin();
-    ASSERT_RESULT(LABIAL_OK, labial_push(&device_memory.stream, SPEECH_EN_M, 100));
-    ASSERT_RESULT(LABIAL_OK, labial_push(&device_memory.stream, SPEECH_EN_SIL, 60000));
-    tick(DELAY, LABIAL_WAITING);
-    tick(500, LABIAL_OK);
-}
-
-/* Would catch a stream that takes silence for the end, or that does not go on after a shortage. */
-static void a_shortage_is_made_up_for(void)
-{
-    begin();
-    tick(10, LABIAL_WAITING);
-    ASSERT_RESULT(LABIAL_OK, labial_push(&device_memory.stream, SPEECH_EN_AA, 1000));
-    tick(10, LABIAL_WAITING); /* what follows is not known */
-    ASSERT_RESULT(LABIAL_OK, labial_push(&device_memory.stream, SPEECH_EN_SIL, 1000));
-    while (labial_tick(&device_memory.stream) != LABIAL_STARVED)
-        TEST_ASSERT_TRUE(delivered < 2 * SPEECH_EN_FPS);
-    tick(10, LABIAL_STARVED);
-    ASSERT_RESULT(LABIAL_OK, labial_end(&device_memory.stream));
-    while (delivered < 2 * SPEECH_EN_FPS)
-        tick(1, LABIAL_OK);
-    tick(3, LABIAL_DONE);
-}
-
 /* Would catch a mouth that stays open. */
 static void the_end_is_rest(void)
 {
@@ -93,7 +66,5 @@ void test_ticks(void)
 {
     Unity.TestFile = __FILE__;
     RUN_TEST(the_delay_is_constant);
-    RUN_TEST(pauses_hold_nothing_up);
-    RUN_TEST(a_shortage_is_made_up_for);
     RUN_TEST(the_end_is_rest);
 }

@@ -324,8 +324,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 int main(void)
 {
     fixture_random_t random = { 1 };
-    unsigned i;
-    for (i = 0; i < INPUTS; i++) {
+    for (unsigned i = 0; i < INPUTS; i++) {
         const size_t size = 1u + fixture_below(&random, LONGEST);
         uint8_t *const bytes = (uint8_t *)malloc(size); /* so that reading beyond them is seen */
         size_t at;

@@ -46,7 +46,6 @@ static void tell(labial_voice_t *voice, input_t *input)
     labial_voice_message_t message;
     const unsigned kinds = byte(input), count = byte(input);
     labial_voice_counts_t before = labial_voice_counts(voice), after;
-    uint32_t i;
     int result;
     memset(&message, 0, sizeof message);
     message.items = items;
@@ -56,7 +55,7 @@ static void tell(labial_voice_t *voice, input_t *input)
     message.utterance = kinds >> 5;
     message.key = count >> 6;
     message.gap = (uint16_t)(count >> 4);
-    for (i = 0; i < message.count; i++) {
+    for (uint32_t i = 0; i < message.count; i++) {
         const unsigned size = byte(input);
         items[i].start = some_time(input);
         items[i].end = byte(input) & 1u ? items[i].start + byte(input) * UINT64_C(3000) : some_time(input);
@@ -76,7 +75,7 @@ static void tell(labial_voice_t *voice, input_t *input)
     REQUIRE(result == LABIAL_OK || result == LABIAL_CANCELLED || result == LABIAL_ERROR_RANGE ||
             result == LABIAL_ERROR_FULL);
     REQUIRE(after.told + after.skipped <= before.told + before.skipped + message.count);
-    for (i = 0; i < message.count; i++)
+    for (uint32_t i = 0; i < message.count; i++)
         free(texts[i]);
 }
 

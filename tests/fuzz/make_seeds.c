@@ -228,17 +228,16 @@ static void add_label(FILE **file, const char *label, size_t length)
 static void make_sounds(void)
 {
     char name[16];
-    unsigned rate, block, i;
-    for (rate = 0; rate < 8u; rate++) {
+    for (unsigned rate = 0; rate < 8u; rate++) {
         uint32_t state = rate;
         FILE *file;
         snprintf(name, sizeof name, "sound_%u", rate);
         file = create("fuzz_hear", name);
         put(file, rate | (rate & 1u) << 3, 1);
-        for (block = 0; block < 12u; block++) {
+        for (unsigned block = 0; block < 12u; block++) {
             put(file, block << 3, 1);
             put(file, 160, 1);
-            for (i = 0; i < 80u; i++) {
+            for (unsigned i = 0; i < 80u; i++) {
                 state = state * 1664525u + 1013904223u;
                 put(file, (i * (block + 1u) * 900u + (state >> 20)) & 0xffffu, 2);
             }
@@ -294,16 +293,15 @@ static void make_labels(const char *table)
 static void make_packets(void)
 {
     FILE *file = create("fuzz_beside", "sentence");
-    uint32_t frame, i;
     put(file, 2u << 16 | 64u << 8 | 24u, 3); /* 24,217 samples per second */
-    for (frame = 0; frame < 60; frame += 10) {
+    for (uint32_t frame = 0; frame < 60; frame += 10) {
         put(file, 0x012000u, 3); /* mended, of 32 bytes */
         put(file, (uint32_t)LABIAL_BESIDE_FORMAT << 24 | (frame == 50u ? 1u << 16 : 0u) | 2u << 8 | 10u, 4);
         put(file, frame << 24, 4); /* low byte first */
         put(file, frame < 40u ? 1u : 2u, 2);
-        for (i = 0; i < 22; i++)
+        for (uint32_t i = 0; i < 22; i++)
             put(file, frame * i, 1);
-        for (i = 0; i < 10; i++) {
+        for (uint32_t i = 0; i < 10; i++) {
             const uint32_t sample = (frame + i) * 485u;
             putc(2, file);
             (void)fwrite(&sample, sizeof sample, 1, file);
@@ -316,9 +314,8 @@ static void make_packets(void)
 static void make_messages(void)
 {
     FILE *file = create("fuzz_voice", "words");
-    uint32_t k;
     put(file, 40, 1);
-    for (k = 0; k < 12; k++) {
+    for (uint32_t k = 0; k < 12; k++) {
         put(file, 4u << 16 | (3u + 6u * (k % 3u)) << 8 | 1u, 3); /* a message of a word */
         put(file, 5u << 16 | k / 3u << 8 | 7u * k, 3);           /* of five letters, and when it begins */
         put(file, 1u << 8 | 100u, 2);                            /* 300 ms long */

@@ -5,7 +5,7 @@ import { readdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, LabialError, folder, source } from "./setup.mjs";
+import { Labial, LabialError, folder, rows, source } from "./setup.mjs";
 
 const hearing = () => import(pathToFileURL(`${folder}-hearing/index.js`));
 const labial = await Labial.load({ hearing });
@@ -27,8 +27,6 @@ function* pieces(samples, lengths) {
         yield samples.subarray(at, at + lengths[i % lengths.length]);
     }
 }
-
-const rows = (frames) => Array.from(frames, (faps) => [...faps]);
 
 async function heard(blocks, options = {}) {
     const one = await labial.hear(null, { sampleRate: RATE, ...options });

@@ -1,4 +1,5 @@
 // What the tests of the npm package share: the package itself, as it was packed, and the conformance streams.
+import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -65,4 +66,19 @@ export function difference(found, wanted) {
 export function binary(mouth, model) {
     if (model === mouth.models.laughter) return unpack(laughter);
     return blob(mouth.memory.bytes.buffer, model.at);
+}
+
+/** The frames as arrays. */
+export const rows = (frames) => Array.from(frames, (faps) => [...faps]);
+
+/** Each call must be refused by an error of the package, or of a type or range, in a sentence of its own. */
+export function refused(calls) {
+    for (const call of calls) {
+        assert.throws(call, (error) => {
+            assert.ok(["LabialError", "TypeError", "RangeError"].includes(error.name), String(error.stack));
+            assert.match(error.message, /^[^\n]{8,250}$/, error.stack);
+            assert.doesNotMatch(error.message, /undefined \(|Cannot|is not a function|convert|is not iterable/, error.stack);
+            return true;
+        }, call.toString());
+    }
 }

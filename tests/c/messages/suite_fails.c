@@ -32,12 +32,12 @@ TEST(unequal)
     assert_int_not_equal(frames(), 950);
 }
 
-TEST(below)
+TEST(too_low)
 {
     assert_in_range(-frames(), -900, 900);
 }
 
-TEST(above)
+TEST(too_high)
 {
     assert_in_range(frames(), -900, 900);
 }
