@@ -177,7 +177,8 @@ if __name__ == "__main__":
 
 @pytest.mark.slow
 def test_a_cluster_that_is_lost_is_named(working: List[str]) -> None:
-    """Not the output, and no defect. The cluster gives up a task with the first worker that it kills, not the fourth."""
+    """Not the output, and no defect. The cluster gives up a task with the first worker that it kills, not the
+    fourth."""
     distributed = pytest.importorskip("distributed", reason="the Dask cluster needs the package distributed")
     dask = pytest.importorskip("dask")
     with dask.config.set({"distributed.scheduler.allowed-failures": 0}), \
