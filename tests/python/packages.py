@@ -22,8 +22,7 @@ CXX = next(filter(None, map(shutil.which, (os.environ.get("LABIAL_CXX") or "g++"
 
 #: What programs of tests are linked with: the build's models and library, or what these are made of.
 LIBRARIES = [Path(name) for name in os.environ.get("LABIAL_LIBRARIES", "").split(os.pathsep) if name] or [
-    path for folder in ("lib/models", "lib/words", "lib") for path in sorted((SOURCE / folder).glob("*.c"))
-    if not path.stem.startswith(("hear_ahead", "hear_host"))]
+    *sorted((SOURCE / "lib").glob("*.c")), *sorted((SOURCE / "lib" / "models").glob("speech_en*.c"))]
 
 needs_runtime = pytest.mark.skipif(
     not os.environ.get("LABIAL_RUNTIME"),
