@@ -143,8 +143,10 @@ def library_frames(vectors: str, **limits: int) -> str:
     with tempfile.TemporaryDirectory(prefix="labial-") as name:
         folder = Path(name)
         (folder / "vectors.c").write_text(vectors, encoding="ascii")
+        library = [path for path in sorted((ROOT / "lib").glob("*.c"))
+                   if not path.name.startswith(("hear", "timings", "voice", "words"))]  # no part of a stream
         sources = [folder / "vectors.c", HERE / "player.c", HERE / "print_frames.c", ROOT / "boards" / "text.c",
-                   ROOT / "boards" / "host" / "host.c", *sorted((ROOT / "lib").glob("*.c")),
+                   ROOT / "boards" / "host" / "host.c", *library,
                    *(ROOT / "lib" / "models" / f"{model}.c" for model in MODELS.values())]
         includes = [f"-I{path}" for path in (ROOT / "include", ROOT / "lib" / "models", ROOT / "boards", HERE)]
         defined = [f"-DLABIAL_{limit.upper()}={value}" for limit, value in limits.items()]

@@ -1,5 +1,5 @@
 """What the Python tests share with pytest: which of them are left to .ci/run, since they take long, which run one after
-the other, and a browser."""
+the other, a browser, and a short measurement of ``labial export``."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ sys.path += [str(ROOT / name) for name in
               "examples/voices", "packaging")]
 
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
-TOGETHER = ("test_adapters", "test_bundlers", "test_kiosk", "test_laughter", "test_packages",
-            "test_packages_cmake", "test_speak_page", "test_train", "test_wheel")  # fmt: skip
+TOGETHER = ("test_adapters", "test_bundlers", "test_esp32_beside", "test_esp32_hear", "test_kiosk", "test_laughter",
+            "test_packages", "test_packages_cmake", "test_speak_page", "test_train", "test_wheel",
+            "test_workers")  # fmt: skip
 
 #: Modules whose pages play sound in a browser, which a busy machine stops for a moment: each test has three tries.
 REAL_TIME = ("test_adapters", "test_browser_hearing", "test_browser_voice", "test_demo", "test_kiosk",
@@ -59,6 +60,15 @@ def pytest_collection_modifyitems(config: pytest.Config, items: List[pytest.Item
     left_out = [item for item in items if (not slow if item.get_closest_marker("slow") else item.path.stem in passed)]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in set(left_out)]
+
+
+@pytest.fixture
+def few_streams(monkeypatch: pytest.MonkeyPatch) -> None:
+    """``labial export`` measures the loss on two streams in place of 24, for tests of what it prints and writes."""
+    from labial.tables import phones
+
+    every = phones.drawn_streams
+    monkeypatch.setattr(phones, "drawn_streams", lambda model: every(model, 2))
 
 
 @pytest.fixture(scope="module")

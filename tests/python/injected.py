@@ -10,8 +10,10 @@ long before anything is written, such as training, gives way to results made up 
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
+import importlib
 import json
 import os
 import random
@@ -225,7 +227,9 @@ def lay(case: Case) -> None:
 
 
 def run(inject: Any, case: Case, after: int, mode: int) -> Tuple[int, int, str]:
-    """Exit status (negative: the signal that ended it), writes, and what standard error said."""
+    """Exit status (negative: the signal that ended it), writes, and what standard error said. What the command imports
+    is imported here, too, so that no later one has to."""
+    known = set(sys.modules)
     counted, count = os.pipe()
     said, say = os.pipe()
     child = os.fork()
@@ -240,7 +244,9 @@ def run(inject: Any, case: Case, after: int, mode: int) -> Tuple[int, int, str]:
             signal.signal(signal.SIGTERM, signal.SIG_DFL)
             inject(after, mode)
             status = main(case.arguments)
-            os.write(count, str(inject(0, NOTHING)).encode())
+            number = inject(0, NOTHING)
+            names = [name for name in set(sys.modules) - known if getattr(sys.modules[name], "__spec__", None)]
+            os.write(count, " ".join([str(number), *names]).encode())
             sys.stderr.flush()
         finally:
             os._exit(status)
@@ -248,8 +254,11 @@ def run(inject: Any, case: Case, after: int, mode: int) -> Tuple[int, int, str]:
     os.close(say)
     with open(counted, "rb") as numbers, open(said, "rb") as lines:
         text = lines.read().decode()
-        number = int(numbers.read() or b"0")
-    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), number, text
+        number, *names = numbers.read().decode().split() or ["0"]
+    for name in sorted(names):
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), int(number), text
 
 
 def left() -> Dict[str, bytes]:

@@ -20,6 +20,10 @@ CMAKE = os.environ.get("LABIAL_CMAKE") or shutil.which("cmake") or ""
 CC = os.environ.get("LABIAL_CC") or "cc"
 CXX = next(filter(None, map(shutil.which, (os.environ.get("LABIAL_CXX") or "g++", "g++", "clang++", "c++"))), "")
 
+#: What programs of tests are linked with: the build's models and library, or what these are made of.
+LIBRARIES = [Path(name) for name in os.environ.get("LABIAL_LIBRARIES", "").split(os.pathsep) if name] or [
+    *sorted((SOURCE / "lib").glob("*.c")), *sorted((SOURCE / "lib" / "models").glob("speech_en*.c"))]
+
 needs_runtime = pytest.mark.skipif(
     not os.environ.get("LABIAL_RUNTIME"),
     reason="LABIAL_RUNTIME names no build of the run-time: cmake --build builds it as labial-python")
@@ -109,15 +113,14 @@ def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
 
 @functools.cache
 def expected_frames() -> str:
-    """What PROGRAM prints when it is compiled with the source tree's files, without any package."""
+    """What PROGRAM prints when it is compiled with the source tree's headers and library, without any package."""
     with tempfile.TemporaryDirectory(prefix="labial-") as folder:
         return _frames(Path(folder))
 
 
 def _frames(folder: Path) -> str:
     (folder / "expected.c").write_text(PROGRAM)
-    sources = [*sorted((SOURCE / "lib").glob("*.c")), *sorted((SOURCE / "lib" / "models").glob("speech_en*.c"))]
-    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *sources,
+    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *LIBRARIES,
         "-o", folder / "expected")
     frames = run(folder / "expected")
     assert len(frames.splitlines()) == 20 + 12  # 400 ms, and the way to rest

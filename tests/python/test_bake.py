@@ -19,7 +19,7 @@ from labial.corpus.formats import SOUNDS
 from labial.files.faps import FAP_COLUMNS
 from labial.reference.fade import EASE
 from models import write_motion
-from packages import CC, CXX, SOURCE, needs_runtime, run, warnings
+from packages import CC, CXX, LIBRARIES, SOURCE, needs_runtime, run, warnings
 
 pytestmark = needs_runtime
 
@@ -120,12 +120,12 @@ def test_both_kinds_play_what_the_library_computes(tmp_path: Path, language: str
     for what a byte and the exported tables round."""
     if language == "c++" and not CXX:
         pytest.skip("no C++ compiler")
-    (tmp_path / "main.c").write_text(PROGRAM)
-    models = SOURCE / "lib" / "models"
-    folders = [TALK, PLAYER.parent, models, SOURCE / "include"]
-    options = [CC, "-std=c99"] if language == "c" else [CXX, "-std=c++11", "-x", "c++"]
-    sources = [tmp_path / "main.c", models / "speech_en.c", *sorted((SOURCE / "lib").glob("*.c"))]
-    run(*options, *warnings(language), *(f"-I{folder}" for folder in folders), *sources, "-o", tmp_path / "main")
+    program = tmp_path / ("main.c" if language == "c" else "main.cpp")
+    program.write_text(PROGRAM)
+    folders = [TALK, PLAYER.parent, SOURCE / "lib" / "models", SOURCE / "include"]
+    options = [CC, "-std=c99"] if language == "c" else [CXX, "-std=c++11"]
+    run(*options, *warnings(language), *(f"-I{folder}" for folder in folders), program, *LIBRARIES,
+        "-o", tmp_path / "main")
     *lines, last = run(tmp_path / "main").splitlines()
     rows = np.array([[int(field) for field in line.split()] for line in lines])
     assert last == "end 3 0"  # LABIAL_DONE, and no frame of the track is left

@@ -88,7 +88,7 @@ def test_synth_articulates(given: Path, capsys: pytest.CaptureFixture) -> None:
 
 
 def test_a_closed_output_is_an_error(
-    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, few_streams: None
 ) -> None:
     """Catches a command that fails as if by a defect, or passes although nobody gets its output."""
     phones = str(given / "phones.lab")
@@ -101,7 +101,7 @@ def test_a_closed_output_is_an_error(
     assert main(["timings", phones, "-o", str(given / "a.lab")]) == 0 and run("p", lambda: 0) == 0
 
 
-def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture) -> None:
+def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture, few_streams: None) -> None:
     """The files are there and the tables name what was measured."""
     assert main(["export", str(given / "model.npz"), "--name", "my_model", "-o", str(given / "out"), "--blob"]) == 0
     text = capsys.readouterr().out
@@ -143,7 +143,7 @@ def test_options_of_one_method_are_not_silently_ignored(
 
 
 @pytest.mark.slow
-def test_amplitude_widens_what_is_exported(given: Path) -> None:
+def test_amplitude_widens_what_is_exported(given: Path, few_streams: None) -> None:
     """Calmed to nothing the target stands still, so that kernels and slopes vanish from the tables."""
     for factor, moves in (("1", True), ("0", False)):
         out = given / f"out{factor}"

@@ -6,12 +6,14 @@ from __future__ import annotations
 import asyncio
 import base64
 import ctypes
+import functools
 import importlib.util
 import json
 import os
 import re
 import subprocess
 import sys
+import tempfile
 import types
 from pathlib import Path
 from typing import Any, AsyncIterator, Dict, List, Tuple
@@ -35,17 +37,24 @@ HELD, EASED = 5, 6  #: calls, as in labial/beside.h
 OK, STARVED = 0, 2  #: of labial/result.h: lips of a frame, and the way to rest
 
 
+@functools.cache
+def mouth(*options: str) -> bytes:
+    """mouth.c as it is compiled for an ESP32, with the stubs, whose assertions end the process."""
+    with tempfile.TemporaryDirectory(prefix="labial-") as name:
+        folder = Path(name)
+        (folder / "none.c").write_text("void lips_render_step(void);\nvoid lips_render_step(void)\n{\n}\n")
+        sources = (EXAMPLE / "mouth.c", SOURCE / "lib/beside.c", SOURCE / "lib/clock.c", STUBS / "esp32.c")
+        subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, *stub_options(folder),
+                        *options, *sources, folder / "none.c", "-o", folder / "mouth.so"], check=True, timeout=120)
+        return (folder / "mouth.so").read_bytes()
+
+
 @pytest.fixture()
 def board(request: pytest.FixtureRequest, tmp_path: Path) -> ctypes.CDLL:
-    """mouth.c as it is compiled for an ESP32, with the stubs, whose assertions end the process; for a servo without a
-    limit of speed, or with that of the parameter."""
+    """A mouth for a servo without a limit of speed, or with that of the parameter; each test has variables of its
+    own."""
     library = tmp_path / "mouth.so"
-    (tmp_path / "none.c").write_text("void lips_render_step(void);\nvoid lips_render_step(void)\n{\n}\n")
-    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, *stub_options(tmp_path),
-                    *getattr(request, "param", ["-DMOUTH_CHANGE=500"]), str(EXAMPLE / "mouth.c"),
-                    str(SOURCE / "lib" / "beside.c"), str(SOURCE / "lib" / "clock.c"), str(STUBS / "esp32.c"),
-                    str(tmp_path / "none.c"), "-o",
-                    str(library)], check=True, timeout=120)
+    library.write_bytes(mouth(*getattr(request, "param", ["-DMOUTH_CHANGE=500"])))
     loaded = ctypes.CDLL(str(library))
     loaded.mouth_receive.restype = ctypes.c_int64
     loaded.mouth_receive.argtypes = [ctypes.c_size_t]

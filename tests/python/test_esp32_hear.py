@@ -7,6 +7,7 @@ import bisect
 import ctypes
 import os
 import re
+import shutil
 import subprocess
 import threading
 import time
@@ -37,13 +38,17 @@ AHEAD = 6  #: frames of sound that must be heard until a frame is known
 Faps = List[int]
 
 
-def build(folder: Path, *sources: Path, options: Sequence[str] = ()) -> ctypes.CDLL:
+def build(folder: Path, *sources: Path, options: Sequence[str] = ()) -> Path:
     """The example as a shared library."""
     library = folder / "lips.so"
     hearing = [*sorted((SOURCE / "lib").glob("hear*.c")), SOURCE / "lib/models/hear_small.c",
                *(SOURCE / f"lib/{name}.c" for name in ("fade", "fixed", "clock"))]
-    subprocess.run([CC, "-std=c11", "-O2", "-shared", "-fPIC", *WARNINGS, *INCLUDES, *options, *map(str, sources),
+    subprocess.run([CC, "-std=c11", "-O1", "-shared", "-fPIC", *WARNINGS, *INCLUDES, *options, *map(str, sources),
                     *map(str, hearing), "-o", str(library)], check=True, timeout=300)
+    return library
+
+
+def load(library: Path) -> ctypes.CDLL:
     loaded = ctypes.CDLL(str(library))
     loaded.lips_feed.restype = ctypes.c_uint64
     loaded.lips_playing.argtypes = [ctypes.c_uint64, ctypes.c_size_t, ctypes.c_int64]
@@ -62,7 +67,7 @@ def stub_options(folder: Path) -> List[str]:
 @pytest.fixture(scope="module")
 def lips(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """lips.c as it is compiled for a host."""
-    return build(tmp_path_factory.mktemp("lips"), EXAMPLE / "lips.c")
+    return load(build(tmp_path_factory.mktemp("lips"), EXAMPLE / "lips.c"))
 
 
 def test_how_far_ahead() -> None:
@@ -367,12 +372,19 @@ def test_threads(lips: ctypes.CDLL) -> None:
 # ---- On the stubs ----------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture()
-def board(tmp_path: Path) -> ctypes.CDLL:
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """lips.c, lips_render.c and servo.c as they are compiled for an ESP32, with the stubs. The assertions in these end
     the process."""
+    folder = tmp_path_factory.mktemp("board")
     sources = [*sorted(EXAMPLE.glob("*.c")), STUBS / "esp32.c", SOURCE / "lib/rig.c", SOURCE / "lib/face.c"]
-    return build(tmp_path, *sources, options=["-DESP_PLATFORM", "-DSERVO_SLEW=20", *stub_options(tmp_path)])
+    return build(folder, *sources, options=["-DESP_PLATFORM", "-DSERVO_SLEW=20", *stub_options(folder)])
+
+
+@pytest.fixture()
+def board(built: Path, tmp_path: Path) -> ctypes.CDLL:
+    """The same, with variables of its own for each test."""
+    return load(Path(shutil.copy(built, tmp_path)))
 
 
 def value(board: ctypes.CDLL, name: str, kind: Any = ctypes.c_int) -> Any:

@@ -37,6 +37,7 @@ from packages import CC, SOURCE
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
           "-Wshadow", "-Werror"]  # fmt: skip
+SANITIZED = [*STRICT, "-fsanitize=undefined", "-fno-sanitize-recover"]
 
 
 def voice(seconds: float, seed: int = 0, rate: int = 16000) -> np.ndarray:
@@ -294,21 +295,28 @@ MODELS = {
 }
 
 
+@pytest.fixture(scope="module")
+def sanitized(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """What hears, compiled with `SANITIZED`."""
+    folder = tmp_path_factory.mktemp("sanitized")
+    sources = [*sorted((SOURCE / "lib").glob("hear*.c")), *(SOURCE / "lib" / name for name in ("fade.c", "fixed.c"))]
+    subprocess.run([CC, *SANITIZED, f"-I{SOURCE / 'include'}", "-c", *sources], cwd=folder, check=True)
+    return [str(path) for path in sorted(folder.glob("*.o"))]
+
+
 @pytest.mark.parametrize("name", [
     "large", "least", "widest",
     *(pytest.param(name, marks=pytest.mark.slow) for name in ("small", "without delay", "deepest")),
 ])  # fmt: skip
-def test_any_model_gives_the_exporters_bits_in_c(tmp_path: Path, name: str) -> None:
+def test_any_model_gives_the_exporters_bits_in_c(tmp_path: Path, sanitized: list[str], name: str) -> None:
     """Catches sizes that the library does not take from the model, and tables that are written wrong."""
     units, memories, classes, rate = MODELS[name]
     tables = quantise(random_model(units, memories, classes, seed=3), "some_model")
     emit.write(tables, tmp_path)
     (tmp_path / "program.c").write_text(PROGRAM)
-    library = sorted(map(str, (SOURCE / "lib").glob("hear*.c"))) + [
-        str(SOURCE / "lib" / name) for name in ("fade.c", "fixed.c")]
-    subprocess.run([CC, *STRICT, "-fsanitize=undefined", "-fno-sanitize-recover", f"-DRATE={rate}",
-                    f"-I{SOURCE / 'include'}", f"-I{tmp_path}", str(tmp_path / "program.c"),
-                    str(tmp_path / "some_model.c"), *library, "-o", str(tmp_path / "program")], check=True)
+    subprocess.run([CC, *SANITIZED, f"-DRATE={rate}", f"-I{SOURCE / 'include'}", f"-I{tmp_path}",
+                    str(tmp_path / "program.c"), str(tmp_path / "some_model.c"), *sanitized,
+                    "-o", str(tmp_path / "program")], check=True)
     sound = voice(1.3, seed=2, rate=rate)
     sound[len(sound) // 2 :] = np.clip(20 * sound[len(sound) // 2 :].astype(int), -32768, 32767)
     done = subprocess.run([tmp_path / "program"], input=sound.astype("<i2").tobytes(), capture_output=True, check=True)

@@ -20,13 +20,13 @@ from labial.tables.layout import table_bytes
 from labial.tables.model import load, save
 from labial.tables.quantise import quantise
 from models import archive, members_of, random_model, streams, without_floors
-from packages import CC, SOURCE, needs_runtime, run, warnings
+from packages import CC, LIBRARIES, SOURCE, needs_runtime, run, warnings
 
 
 def build(folder: Path, *files: str) -> Path:
-    program, library = folder / "program", sorted((SOURCE / "lib").glob("*.c"))
+    program = folder / "program"
     run(CC, "-std=c99", *warnings("c"), f"-I{SOURCE / 'include'}", f"-I{folder}", *(folder / file for file in files),
-        *library, "-o", program)
+        *LIBRARIES, "-o", program)
     return program
 
 

@@ -102,7 +102,7 @@ def every_label() -> list[str]:
     labels += [mark.format(label) for label in list(labels) for mark in marks]
     rng = random.Random(1)
     pieces = [*"aAbBeEiIkKNsStT@{}<>[]+#_:;=~^'\",%\\|0123 ()vf.-", *"ɑəʃθŋːˑˈˌʰʷⁿçɜ˞ʔy", "̃", "̩", "͡", "̧", "̊"]
-    labels += ["".join(rng.choices(pieces, k=rng.randint(1, 7))) for _ in range(20000)]
+    labels += ["".join(rng.choices(pieces, k=rng.randint(1, 7))) for _ in range(5000)]
     return labels
 
 

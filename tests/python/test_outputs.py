@@ -230,7 +230,9 @@ def test_several_files_say_which_are_new(given: Path, monkeypatch: pytest.Monkey
 
 @pytest.mark.parametrize("command", [["bake", "../a.lab", "-o", "talk.h"],
                                      ["export", "../model.npz", "--name", "m", "-o", "."]])
-def test_the_current_folder_stays(given: Path, monkeypatch: pytest.MonkeyPatch, command: List[str]) -> None:
+def test_the_current_folder_stays(
+    given: Path, monkeypatch: pytest.MonkeyPatch, few_streams: None, command: List[str]
+) -> None:
     """Would catch an empty folder that is replaced by a new one: the shell that stands in it would be nowhere, and the
     folder's owner and permissions would be lost."""
     Path("empty").mkdir(mode=0o770)

@@ -318,13 +318,15 @@ def test_the_figure_of_check_is_measured_from_the_published_method(given: Path, 
 
 
 @pytest.mark.slow
-def test_export_says_it_too(given: Path, capsys: pytest.CaptureFixture) -> None:
+def test_export_says_it_too(given: Path, capsys: pytest.CaptureFixture, few_streams: None) -> None:
     assert main(["export", str(given / "paper.npz"), "--name", "m", "-o", str(given / "out")]) == 0
     text = capsys.readouterr().out
     assert "from the published method, FAP" in text and "by design" in text and "quantisation loss" not in text
 
 
-def test_bundled_models_by_name(given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+def test_bundled_models_by_name(
+    given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, few_streams: None
+) -> None:
     """In every command that takes a model; a file of the same name is another thing."""
     monkeypatch.chdir(given)
     (given / "hello.lab").write_text("0 0.2 SIL\n0.2 0.3 B\n0.3 0.5 AY\n0.5 0.8 SIL\n")
