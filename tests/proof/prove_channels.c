@@ -88,6 +88,7 @@ static void pass(int stride)
     int16_t frame[LABIAL_CHANNELS];
     int i;
     labial_channels_init(&channels, (unsigned)stride, LABIAL_CHANNELS, workspace);
+    labial_channels_reset(&channels);
     FILL(workspace);
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = any_uint8;
