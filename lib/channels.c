@@ -20,7 +20,6 @@ labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned strid
     channels->progress = (labial_progress_t *)workspace;
     channels->frames = (labial_frame_t *)(void *)(channels->progress + width);
     channels->motion = (int16_t *)(void *)(channels->frames + stride + LABIAL_LAG);
-    labial_channels_reset(channels);
     return (labial_shape_t *)(void *)(channels->motion + stride * width);
 }
 
@@ -102,7 +101,8 @@ typedef struct {
     labial_progress_t *progress;
     labial_factors_t *end; /* those of age LABIAL_LAG, the latest frame whose row can be known */
     unsigned channel;
-    int32_t gain; /* articulation */
+    int32_t gain;   /* articulation */
+    unsigned place; /* of the last frame that becomes due, in the rings of motion */
 } step_t;
 
 /* The model of the frame of an age. */
@@ -192,16 +192,16 @@ static void step_channel(const labial_channels_t *channels, step_t *step, labial
     }
     if (LABIAL_LAG > 0)
         solve(step, row, newest, beyond);
-    age = newest - LABIAL_LAG < stride ? newest - LABIAL_LAG : stride;
-    for (own = step->end - age; own < step->end; own++) { /* as if all frames beyond were equal to the last */
+    age = newest - LABIAL_LAG;
+    /* As if all frames beyond were equal to the last. */
+    for (own = step->end - (age < stride ? age : stride); own < step->end; own++) {
         own[1].q = own->q;
         own[1].rho = own[1].kappa = 0;
     }
     /* The latest row waits for the next one, unless it is its solution's last. */
-    age = beyond > LABIAL_LAG || (step->latest[-LABIAL_LAG].marks & LABIAL_ENDS) ? 0 : 1;
-    labial_trajectory_back(step->end - age, (unsigned)(LABIAL_WINDOW + 1 - age), (unsigned)stride,
-                           (channels->phase > 0 ? channels->phase : (unsigned)stride) - 1u, (unsigned)stride,
-                           channels->motion + channel * (unsigned)stride);
+    age = step->latest[-LABIAL_LAG].marks & LABIAL_ENDS ? 0 : 1;
+    labial_trajectory_back(step->end - age, (unsigned)(LABIAL_WINDOW + 1 - age), (unsigned)stride, step->place,
+                           (unsigned)stride, channels->motion + channel * (unsigned)stride);
     keep(step->progress->kept.of, work + stride);
 }
 
@@ -215,6 +215,7 @@ void labial_channels_step(labial_channels_t *channels, const labial_model_t *con
     step.latest = channels->frames + channels->stride + LABIAL_LAG - 1;
     step.end = work + LABIAL_WINDOW + channels->stride;
     step.gain = gain;
+    step.place = (channels->phase > 0 ? channels->phase : channels->stride) - 1u;
     for (channel = channels->phase; channel < channels->stepping; channel += channels->stride)
         step_channel(channels, &step, work, channel);
 }

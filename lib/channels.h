@@ -14,8 +14,8 @@
 
 #include "labial/labial.h"
 
-/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride, width) bytes and resets them; returns the place of two shapes
- * in it. */
+/* Divides up a workspace of LABIAL_WORKSPACE_SIZE(stride, width) bytes, for labial_channels_reset() to clear; returns the
+ * place of two shapes in it. */
 labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned stride, unsigned width, void *workspace);
 
 /* Drops all frames. */

@@ -34,31 +34,25 @@ static int32_t share_at(unsigned step, unsigned steps)
     return step < steps ? labial_ease(step, steps) : (int32_t)1 << 14;
 }
 
-/* Where a channel of the motion is; null is the neutral face. */
-static int16_t aim_of(const int16_t *motion, unsigned channel)
-{
-    return motion ? motion[channel] : (int16_t)0;
-}
-
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
     const unsigned step = fade->step, halvings = step < 15u ? step : 15u;
+    unsigned closing = LABIAL_FADE_CLOSING, k; /* bit 0 is that of channel k */
     int32_t share, closed;
-    unsigned k;
     if (step == 0 || step >= fade->length) { /* not on a way, or at its end */
         for (k = 0; k < LABIAL_CHANNELS; k++) {
             fade->earlier[k] = fade->pose[k];
-            fade->pose[k] = aim_of(motion, k);
+            fade->pose[k] = motion[k];
         }
         fade->step = 0;
         return;
     }
     share = share_at(step, fade->length);
-    closed = share_at(step, fade->closing);
-    for (k = 0; k < LABIAL_CHANNELS; k++) {
+    closed = fade->closing == fade->length ? share : share_at(step, fade->closing);
+    for (k = 0; k < LABIAL_CHANNELS; k++, closing >>= 1) {
         const int32_t from = fade->from[k] + fade->earlier[k] - (fade->earlier[k] >> halvings);
-        const int32_t own = LABIAL_FADE_CLOSING >> k & 1u ? closed : share;
-        fade->pose[k] = (int16_t)labial_clamp(from + (((aim_of(motion, k) - from) * own + 8192) >> 14), INT16_MAX);
+        const int32_t own = closing & 1u ? closed : share;
+        fade->pose[k] = (int16_t)labial_clamp(from + (((motion[k] - from) * own + 8192) >> 14), INT16_MAX);
     }
     fade->step = (uint16_t)(step + 1u);
 }

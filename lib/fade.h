@@ -31,8 +31,7 @@ unsigned labial_fade_frames(uint32_t milliseconds, uint32_t frames_per_second);
  * lips arrive with step `closing`. */
 void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, int goes_on);
 
-/* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. A null pointer is the neutral
- * face. */
+/* Delivers the next pose: that of the way, if there is one, else `motion`; Q4 FAP. */
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion);
 
 /* What is left of `whole` on the way, in even steps; 0 at its end, and without one. */

@@ -29,8 +29,8 @@ static int usable(const labial_hear_t *hear)
 /* Delivers a pose, Q4, or the neutral face, as far as the fade leads there. */
 static int tell_frame(labial_hear_t *hear, const int16_t *pose)
 {
-    int16_t faps[LABIAL_CHANNELS];
-    labial_fade_to(&hear->fade, pose);
+    int16_t faps[LABIAL_CHANNELS] = { 0 }; /* the neutral face, before the pose */
+    labial_fade_to(&hear->fade, pose ? pose : faps);
     labial_fade_faps(&hear->fade, faps);
     hear->busy = 1;
     hear->callback(hear->user, hear->frame++, faps);

@@ -35,7 +35,6 @@ labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned strid
     channels->width = LABIAL_CHANNELS;
     channels->stride = (uint8_t)stride;
     channels->pieces = (labial_pieces_t *)workspace;
-    labial_channels_reset(channels);
     return (labial_shape_t *)(void *)(channels->pieces + 1);
 }
 

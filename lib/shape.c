@@ -179,23 +179,29 @@ static const int16_t *floors_of(const labial_model_t *model, unsigned phoneme)
     return floor ? model->floors + (floor - 1u) * model->channel_count : NULL;
 }
 
-/* Raises those of the channels to a phoneme's floor that lie below it; or, with `rest`, brings them that share of
- * LABIAL_REST_FRAMES of the way there. */
+/* Raises those of the channels to a phoneme's floor that lie below it. */
 static void apply_floor(const labial_model_t *model, unsigned phoneme, unsigned channels,
-                        int16_t target[LABIAL_CHANNELS], int32_t rest)
+                        int16_t target[LABIAL_CHANNELS])
 {
-    const int16_t *const least = floors_of(model, phoneme);
-    const unsigned width = model->channel_count;
+    const int16_t *least = floors_of(model, phoneme);
+    unsigned left;
+    if (least)
+        for (left = model->channel_count; left > 0; left--, target++, least++, channels >>= 1)
+            if ((channels & 1u) && *target < *least)
+                *target = *least;
+}
+
+/* Brings the channels `rest` of LABIAL_REST_FRAMES of the way to the floor of silence. */
+static void come_to_rest(const labial_model_t *model, unsigned channels, int16_t target[LABIAL_CHANNELS], int32_t rest)
+{
+    const int16_t *const floors = floors_of(model, model->silence);
     unsigned k;
-    if (!least)
-        return;
-    for (k = 0; k < width; k++, channels >>= 1)
+    for (k = 0; channels > 0; k++, channels >>= 1)
         if (channels & 1u) {
-            const int32_t above = least[k] - target[k];
-            if (rest > 0)
-                target[k] = (int16_t)(target[k] + above * rest / LABIAL_REST_FRAMES);
-            else if (above > 0)
-                target[k] = least[k];
+            /* Only phonemes with floors make contact, in channels that the model has. */
+            /*@ assert floors != \null && k < 13; */
+            LABIAL_CHECK(floors && k < model->channel_count);
+            target[k] = (int16_t)(target[k] + (floors[k] - target[k]) * rest / LABIAL_REST_FRAMES);
         }
 }
 
@@ -251,15 +257,15 @@ static unsigned touch(const labial_model_t *model, const labial_taken_t *taken, 
     const unsigned apart = taken->is_open || labels[0] == model->silence ? own : 0u; /* not in this frame */
     unsigned borrowed = 0;
     int step;
-    apply_floor(model, labels[0], ~apart, target, 0);
+    apply_floor(model, labels[0], ~apart, target);
     if (taken->rest)
-        apply_floor(model, labels[0], own, target, taken->rest);
+        come_to_rest(model, own, target, taken->rest);
     for (step = -1; step < 2; step += 2) { /* a short contact has the frame before it, and one frame's that after it */
         const unsigned beside = labels[step];
         if (beside != labels[0] && beside != model->silence &&
             (beside != labels[2 * step] || (step > 0 && beside != labels[3]))) {
             const unsigned contacts = contacts_of(model, beside);
-            apply_floor(model, beside, contacts, target, 0);
+            apply_floor(model, beside, contacts, target);
             borrowed |= contacts;
         }
     }

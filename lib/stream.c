@@ -188,6 +188,7 @@ static int deliver(labial_t *stream)
 /* Makes the next pose of the way to rest the one to deliver; returns whether there is one. */
 static int rest(labial_t *stream)
 {
+    int16_t neutral[LABIAL_CHANNELS];
     if (!stream->resting) {
         if (stream->exact || labial_fade_rests(&stream->fade))
             return 0;
@@ -196,7 +197,8 @@ static int rest(labial_t *stream)
     }
     if (stream->fade.step == 0)
         return 0;
-    labial_fade_to(&stream->fade, NULL);
+    memset(neutral, 0, sizeof neutral);
+    labial_fade_to(&stream->fade, neutral);
     return 1;
 }
 
@@ -246,7 +248,7 @@ int labial_init(labial_t *stream, const labial_model_t *model, void *workspace, 
     stream->articulation.wanted = 100;
     stream->resting = 1;
     stream->shape = labial_channels_init(&stream->channels, model->search_stride, width, workspace);
-    stream->next.shape = stream->shape + stream->channels.width;
+    stream->next.shape = stream->shape + width;
     stream->magic = LABIAL_MAGIC_;
     reset_input(stream);
     return LABIAL_OK;

@@ -49,13 +49,10 @@ static inline unsigned headroom(uint32_t d, unsigned shift)
     (void)shift;
     return (unsigned)__builtin_clz(d) - 1u;
 #else
-    uint32_t top;
-    while ((top = d >> (30u - shift)) != 1u) {
-        if (top)
-            shift--;
-        else
-            shift++;
-    }
+    while (d >> (30u - shift) == 0)
+        shift++;
+    while (d >> (30u - shift) > 1u)
+        shift--;
     return shift;
 #endif
 }
@@ -114,12 +111,12 @@ static void factor(labial_solver_t *solver, int32_t c, int32_t delta, labial_fac
     if (g < hold)
         g = hold;
     /* GCOVR_EXCL_BR_STOP */
-    filter_row(solver, g);
-    factors->q = solver->q1;
     inverse = reciprocal((uint32_t)(g + f + second), &solver->shifts[1]);
     shift = solver->shifts[1];
     rho = keep_part(g, inverse, shift, &factors->rho);
     kappa = keep_part(second, inverse, shift, &factors->kappa);
+    filter_row(solver, g);
+    factors->q = solver->q1;
     solver->k2 = solver->k1;
     solver->k1 = labial_part24(second, rho);
     solver->row = labial_part24(f, rho) + 2 * solver->k1;
@@ -153,7 +150,8 @@ void labial_trajectory_terms(const labial_channel_t *channel, unsigned number, i
 void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
                             unsigned channel, unsigned count, labial_factors_t *own)
 {
-    for (; count > 0; count--, frame++, own++) {
+    const labial_frame_t *const end = frame + count;
+    do {
         const int is_first = frame->marks & LABIAL_BEGINS, is_last = frame->marks & LABIAL_ENDS;
         if (is_first || is_last) { /* without deltas */
             if (is_first)
@@ -180,7 +178,8 @@ void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms
         }
         if (is_last)
             factor(solver, 0, 0, own);
-    }
+        own++;
+    } while (++frame < end);
 }
 
 /* How far the frame of `at` lies from the next, whose position is `m` and which lies `moved` from the one after it. */
@@ -200,7 +199,9 @@ void labial_trajectory_back(const labial_factors_t *newest, unsigned ahead, unsi
             motion[place] = (int16_t)labial_clamp((m + 128) >> 8, INT16_MAX);
             if (--wanted == 0)
                 return;
-            place = place > 0 ? place - 1u : places - 1u;
+            if (place == 0)
+                place = places;
+            place--;
         }
         moved = step_back(--newest, m, moved);
         m += moved;

@@ -37,9 +37,9 @@ typedef struct {
 void labial_trajectory_terms(const labial_channel_t *channel, unsigned state, int32_t gain, labial_terms_t *terms);
 
 /*
- * Adds the rows of `count` successive frames of `channel` that have the same terms. A frame in contact is tied to its
- * target alone, by `contact_weight`. Every row but a solution's first factors the frame before it, into own[-1]; a
- * solution's last row factors its own frame too, into own[0]; then `own` moves on with the frames.
+ * Adds the rows of `count` successive frames of `channel`, one at least, that have the same terms. A frame in contact is
+ * tied to its target alone, by `contact_weight`. Every row but a solution's first factors the frame before it, into
+ * own[-1]; a solution's last row factors its own frame too, into own[0]; then `own` moves on with the frames.
  */
 void labial_trajectory_rows(labial_solver_t *solver, const labial_terms_t *terms, const labial_frame_t *frame,
                             unsigned channel, unsigned count, labial_factors_t *own);

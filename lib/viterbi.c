@@ -15,7 +15,7 @@ static unsigned searched(const labial_model_t *model)
 static unsigned first_of_window(const labial_model_t *model, const labial_channel_t *channel, int32_t position)
 {
     const labial_emission_t *emissions = channel->emissions;
-    const unsigned states = model->state_count, size = searched(model);
+    const unsigned states = model->state_count, last = states > LABIAL_SEARCHED ? states - LABIAL_SEARCHED : 0u;
     unsigned low = 0, high = states - 1u;
     while (low < high) { /* the next state is nearer where their middle lies below the position */
         const unsigned middle = (low + high) / 2u;
@@ -24,8 +24,8 @@ static unsigned first_of_window(const labial_model_t *model, const labial_channe
         else
             high = middle;
     }
-    low = low > size / 2u ? low - size / 2u : 0u;
-    return low + size < states ? low : states - size;
+    low = low > LABIAL_SEARCHED / 2u ? low - LABIAL_SEARCHED / 2u : 0u;
+    return low < last ? low : last;
 }
 
 /* Ages the stored paths by a step, or drops them. */
@@ -44,17 +44,19 @@ static void age(labial_search_t *search, int is_first)
 #endif
 }
 
-/* The least of a cost and of that of entering state `i` of a window by a transition; stores the predecessor. */
-static inline uint32_t cross(labial_search_t *search, const labial_transition_t *transition, unsigned i, uint32_t least)
+/* The least of a cost and of that of entering a state by a transition from a window of `count` states from `first` on;
+ * stores the predecessor in `back`, which is null without a lag. */
+static inline uint32_t cross(const labial_transition_t *transition, const uint8_t *scores, unsigned first,
+                             unsigned count, uint8_t *back, uint32_t least)
 {
-    const unsigned predecessor = (unsigned)transition->predecessor - search->first;
-    if (predecessor < search->count) {
-        const uint32_t score = (uint32_t)search->scores[predecessor] + transition->cost;
+    const unsigned predecessor = transition->predecessor - first;
+    if (predecessor < count) {
+        const uint32_t score = (uint32_t)scores[predecessor] + transition->cost;
         if (score < least) {
 #if LABIAL_LAG > 0
-            search->back[0][i] = (uint8_t)predecessor;
+            *back = (uint8_t)predecessor;
 #else
-            (void)i;
+            (void)back;
 #endif
             return score;
         }
@@ -62,22 +64,29 @@ static inline uint32_t cross(labial_search_t *search, const labial_transition_t 
     return least;
 }
 
-/* The least cost of entering state `i` of a window, by its transitions or from the best state. */
-static inline uint32_t enter(labial_search_t *search, const labial_transition_t *transition,
-                             const labial_transition_t *const end, unsigned i)
+void labial_viterbi_enter(labial_search_t *search, const labial_transition_t *transition, unsigned fours, unsigned size,
+                          uint32_t *costs)
 {
-    uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
+    const unsigned first = search->first, count = search->count;
+    const uint8_t *const scores = search->scores;
+    uint8_t *back = NULL;
+    unsigned i;
+    for (i = 0; i < size; i++) {
+        uint32_t least = LABIAL_DEAD; /* from the best, whose score is 0 */
+        unsigned left = fours;
 #if LABIAL_LAG > 0
-    search->back[0][i] = search->best;
+        back = &search->back[0][i];
+        *back = search->best;
 #endif
-    do {
-        least = cross(search, transition, i, least);
-        least = cross(search, transition + 1, i, least);
-        least = cross(search, transition + 2, i, least);
-        least = cross(search, transition + 3, i, least);
-        transition += 4;
-    } while (transition < end);
-    return least;
+        do {
+            least = cross(transition, scores, first, count, back, least);
+            least = cross(transition + 1, scores, first, count, back, least);
+            least = cross(transition + 2, scores, first, count, back, least);
+            least = cross(transition + 3, scores, first, count, back, least);
+            transition += 4;
+        } while (--left > 0);
+        costs[i] = least;
+    }
 }
 
 /* Finds the states of the undecided steps from state `best` of the latest; at the end of a unit they are decided. */
@@ -113,8 +122,7 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
         for (i = 0; i < size; i++)
             costs[i] = channel->initials[first + i];
     else
-        for (cost = costs; cost < end; cost++, transition += into)
-            *cost = enter(search, transition, transition + into, (unsigned)(cost - costs));
+        labial_viterbi_enter(search, transition, model->predecessor_fours, size, costs);
     for (cost = costs; cost < end; cost++, state++) {
         *cost += labial_viterbi_emission(state, position);
         if (*cost < *least)
@@ -132,7 +140,9 @@ void labial_viterbi_step(const labial_model_t *model, const labial_channel_t *ch
     }
     search->first = (uint8_t)first;
     search->count = (uint8_t)size;
+#if LABIAL_LAG > 0
     search->best = (uint8_t)best;
+#endif
     for (i = 0; i < size; i++) {
         const uint32_t above = costs[i] - *least;
         search->scores[i] = (uint8_t)(above < LABIAL_DEAD ? above : LABIAL_DEAD);

@@ -32,6 +32,12 @@ static inline uint32_t labial_viterbi_emission(const labial_emission_t *state, i
     return labial_z_cost(z < LABIAL_EMISSION_Z_MAX ? z : LABIAL_EMISSION_Z_MAX) + state->cost;
 }
 
+/* Finds the least cost of entering each of `size` states of a window from those of the latest step, the first of which
+ * has its `fours` times four transitions at `transition`. Not static, or compilers would make it a part of
+ * labial_viterbi_step(), whose variables would take the registers that its loops need. */
+void labial_viterbi_enter(labial_search_t *search, const labial_transition_t *transition, unsigned fours, unsigned size,
+                          uint32_t *costs);
+
 /*
  * Makes the next step of a path, for a target `position`. `marks` are those of its frames (units.h): with LABIAL_BEGINS
  * it is a path's first step; with LABIAL_UNIT_ENDS it ends a unit, and the next step starts from its best state.

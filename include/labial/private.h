@@ -53,10 +53,10 @@ typedef struct {
 typedef struct {
     uint8_t first; /* state of the window */
     uint8_t count; /* states of the window; after the end of a unit it is the best one alone */
-    uint8_t best;  /* state, counted from the first */
     uint8_t scores[LABIAL_SEARCHED];
     uint8_t path[LABIAL_LAG + 1]; /* states of the last steps, the latest first */
 #if LABIAL_LAG > 0
+    uint8_t best;                              /* state, counted from the first */
     uint8_t spans[LABIAL_LAG + 1];             /* frames of these steps */
     uint8_t undecided;                         /* steps before the last whose states may still change */
     uint8_t firsts[LABIAL_LAG];                /* windows of the steps before the last */

@@ -136,9 +136,9 @@ TEST(scores_are_those_of_exhaustive_search)
             take_step(&search, t, 0, 1, 0);
         exhaust(count, least);
         check_scores(&search, least, 0, "exhaustive");
-        assert_true(least[search.first + search.best] == least[steps[count - 1].best]); /* the oracle agrees */
-        for (unsigned t = 0; t < search.best; t++)
-            assert_true(least[search.first + t] > least[search.first + search.best]); /* the lowest of the best */
+        assert_true(least[search.path[0]] == least[steps[count - 1].best]); /* the oracle agrees */
+        for (unsigned t = search.first; t < search.path[0]; t++)
+            assert_true(least[t] > least[search.path[0]]); /* the lowest of the best */
     }
 }
 

@@ -26,7 +26,7 @@ void labial_fade_begin(labial_fade_t *fade, unsigned length, unsigned closing, i
 
 void labial_fade_to(labial_fade_t *fade, const int16_t *motion)
 {
-    fade->pose[0] = motion ? motion[LABIAL_CHANNELS - 1] : (int16_t)0;
+    fade->pose[0] = motion[LABIAL_CHANNELS - 1];
     FILL(fade->pose);
     fade->step = any_uint16;
 }

@@ -18,7 +18,7 @@ static const labial_model_t *models[LABIAL_MODELS];
 void labial_viterbi_step(const labial_model_t *any, const labial_channel_t *channel, int32_t position, unsigned marks,
                          labial_search_t *search)
 {
-    search->best = (uint8_t)(any->state_count + channel->emissions[0].mean + position + (int)(marks & 255u));
+    search->first = (uint8_t)(any->state_count + channel->emissions[0].mean + position + (int)(marks & 255u));
     search->path[0] = (uint8_t)Frama_C_interval(0, LABIAL_STATES_MAX - 1);
 }
 
@@ -88,6 +88,7 @@ static void pass(int stride)
     int16_t frame[LABIAL_CHANNELS];
     int i;
     labial_channels_init(&channels, (unsigned)stride, LABIAL_CHANNELS, workspace);
+    labial_channels_reset(&channels);
     FILL(workspace);
     channels.phase = (uint8_t)Frama_C_interval(0, stride - 1);
     channels.entered = any_uint8;

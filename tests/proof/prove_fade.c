@@ -46,7 +46,8 @@ static void fade_to_rest(int least, int most)
     memset(fade.earlier, 0, sizeof fade.earlier);
     fade.step = (uint16_t)Frama_C_interval(0, most);
     fade.length = fade.closing = (uint16_t)Frama_C_interval(least, most);
-    labial_fade_to(&fade, NULL);
+    memset(wanted, 0, sizeof wanted);
+    labial_fade_to(&fade, wanted);
     any_pose();
     labial_fade_begin(&fade, (unsigned)Frama_C_interval(least, most), (unsigned)Frama_C_interval(0, most), any_int);
 }
