@@ -23,7 +23,7 @@ import labial
 from labial.__main__ import main
 from labial.errors import DataError, LabialError, ModelError, StreamError
 from labial.rig.animation import arkit
-from labial.tables.emit import blob
+from labial.tables.layout import blob
 from labial.tables.model import load, save
 from labial.tables.phones import read_stream
 from labial.tables.quantise import ExportedModel, quantise
