@@ -160,8 +160,6 @@ TEST(two_models_are_the_sum_of_their_steps)
         other->model.search_stride = FIXTURE_STRIDE;
     }
 #else
-    (void)seed;
-    (void)i;
     (void)random;
     (void)kinds;
 #endif
@@ -260,8 +258,6 @@ TEST(two_articulated_models_are_the_sum_of_their_steps)
         compare_told(2, FADED_TOLERANCE, "two models, articulated", seed);
     }
 #else
-    (void)seed;
-    (void)i;
     (void)random;
 #endif
 }
