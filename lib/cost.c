@@ -19,7 +19,7 @@ enum {
     PER_COMPARISON = 20, /* of a binary search */
     PER_SEARCH = 300,    /* of one channel */
     PER_STATE = 100,     /* that is searched */
-    PER_TRANSITION = 12, /* into such a state */
+    PER_TRANSITION = 11, /* into such a state */
     PER_LAG = 60,        /* frame of the lag, in one channel */
     PER_ROW = 650,       /* of equation 3 */
     PER_STEP_BACK = 32   /* of the backward pass */
