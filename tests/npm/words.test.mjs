@@ -186,7 +186,7 @@ test("hostile values are refused in a sentence, and take no memory", () => {
         ...["x", null, "constructor", "lab"].flatMap((format) => [() => words.read([{}], { format }), () => words.reader({ format })]),
         () => words.reader().read(5), () => words.reader({ format: "words" }).read({ word: "a" }), () => words.stream({ own: 5 }),
     ];
-    refused([...calls, ...calls, ...calls]);
+    refused([...calls, ...calls, ...calls], 250, ["LabialError", "TypeError"]);
     assert.equal(memory.buffer.byteLength, before);
 });
 
