@@ -251,8 +251,7 @@ void labial_hear_features(int16_t window[LABIAL_HEAR_WINDOW_], int silent, labia
     }
 }
 
-/* ---- Samples to windows
- * ------------------------------------------------------------------------------------------- */
+/* ---- Samples to windows ------------------------------------------------------------------------------------------ */
 
 /* Whether the samples that a window has beyond the one before it are silent. */
 static int is_silent(const int16_t *window)

@@ -71,8 +71,7 @@ void labial_clock_stop(labial_clock_t *clock);
  */
 int64_t labial_clock_at(const labial_clock_t *clock, int64_t now, int64_t *sample);
 
-/* ---- Private
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 struct labial_clock {
     uint32_t samples_per_second; /* 0 before labial_clock_init() */

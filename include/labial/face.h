@@ -213,8 +213,7 @@ unsigned labial_face_attached(const labial_face_t *face);
  */
 int labial_face_place(labial_face_t *face, const int32_t *values);
 
-/* ---- Private
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 /* 40 bytes where a pointer has 4. */
 struct labial_face {

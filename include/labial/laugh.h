@@ -84,8 +84,7 @@ int labial_laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned int
  */
 int labial_laugh_next(labial_laugh_t *laugh, unsigned *phoneme, uint32_t *milliseconds);
 
-/* ---- Private
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 struct labial_laugh {
     uint32_t left;         /* milliseconds to come */

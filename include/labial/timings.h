@@ -128,8 +128,7 @@ uint32_t labial_timings_line(const labial_timings_t *timings);
 /* What is wrong, one line that is valid until the parser is prepared anew; "" before an error. */
 const char *labial_timings_message(const labial_timings_t *timings);
 
-/* ---- Private
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 /* What a TextGrid needs beside the fields of a line. */
 struct labial_timings_grid {
