@@ -54,11 +54,10 @@ extern "C" {
 
 /* The least length of a contact in frames; a longer phoneme is in contact in the middle half of its frames. A shorter
  * one borrows the frame before it and, if it has only one frame, the frame after it as well. A phoneme of
- * LABIAL_CONTACT_LONG frames or more includes a pause, and is in contact only in its last LABIAL_CONTACT_LAST
- * frames. */
+ * LABIAL_CONTACT_LONG frames or more, a hum or one with a pause before it, is in contact until its end, in all but its
+ * first LABIAL_CONTACT_FRAMES frames. */
 #define LABIAL_CONTACT_FRAMES 3
 #define LABIAL_CONTACT_LONG 15
-#define LABIAL_CONTACT_LAST 8
 
 /* Frames over which a mouth comes to rest in a pause. The last frames of a pause lead to what follows instead; a
  * stream that begins with a pause begins at rest. */

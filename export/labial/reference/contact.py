@@ -2,10 +2,10 @@
 
 In contact a target does not fall below its floor, and equation 3 ties the frame to it firmly. A phoneme is in contact
 in the middle half of its frames, but in FRAMES of them at least; a shorter one borrows the frame before it and, if it
-has only one frame, the frame after it as well. A phoneme of LONG frames or more includes a pause; it is in contact only
-in its LAST frames. Where at most FRAMES frames lie between two contacts, the lips part by PARTED in those that neither
-borrows, lest the two become one. In a pause the mouth comes to rest, except in the last frames, which lead to what
-follows.
+has only one frame, the frame after it as well. A phoneme of LONG frames or more, a hum or one with a pause before it,
+is in contact until its end, in all but its first FRAMES frames. Where at most FRAMES frames lie between two contacts,
+the lips part by PARTED in those that neither borrows, lest the two become one. In a pause the mouth comes to rest,
+except in the last frames, which lead to what follows.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from labial.tables.fixed import CONTACT_FRAMES, POSITION_MAX
 #: Frames (``include/labial/model.h``).
 FRAMES = CONTACT_FRAMES
 LONG = 15
-LAST = 8
 REST = 16
 #: Farther than contacts are looked for, frames.
 FAR = 2 * FRAMES
@@ -50,7 +49,7 @@ def raised(target: np.ndarray, labels: np.ndarray, length: np.ndarray, rest: np.
     makes[silence] = False
     behind, ahead = (_distance([label(sign * lag) for lag in range(1, FRAMES + 1)], makes, silence) for sign in (-1, 1))
     between = np.where(makes[labels] | (labels == silence), FAR, behind + ahead - 1)  # frames between two contacts
-    closing = np.where(whole < LONG, _in_the_middle(whole - left, whole), left <= LAST) & (labels != silence)
+    closing = np.where(whole < LONG, _in_the_middle(whole - left, whole), whole - left >= FRAMES) & (labels != silence)
     short = (label(1) != labels) & (label(1) != silence) & ~((label(1) == label(2)) & (label(2) == label(3)))
     single = (label(-1) != labels) & (label(-1) != silence) & (label(-1) != label(-2))
     own = contact[labels] & closing[:, None]
