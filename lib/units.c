@@ -159,13 +159,13 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
 }
 
 /* Whether frame `frame` of a phoneme of `frames` lies outside of its contact, which the middle half of its frames make,
- * but LABIAL_CONTACT_FRAMES of them at least; all but the first ones of a long one. */
+ * but LABIAL_CONTACT_FRAMES of them at least, and all but LABIAL_CONTACT_OPEN. */
 static int lies_open(uint32_t frame, uint32_t frames)
 {
     uint32_t held = (frames + 1u) / 2u;
     int32_t before;
-    if (frames >= LABIAL_CONTACT_LONG)
-        return frame < LABIAL_CONTACT_FRAMES;
+    if (frames > 2u * LABIAL_CONTACT_OPEN)
+        held = frames - LABIAL_CONTACT_OPEN;
     if (held < LABIAL_CONTACT_FRAMES)
         held = LABIAL_CONTACT_FRAMES;
     before = ((int32_t)frames - (int32_t)held) >> 1; /* below 0 where there are less than those */

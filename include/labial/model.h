@@ -52,12 +52,11 @@ extern "C" {
 #define LABIAL_NO_FLOOR (-16384)                             /* in `floors`: below every position */
 #define LABIAL_POSITION_MAX 16383                            /* Q4: +-1023.9 FAP units around the channel's centre */
 
-/* The least length of a contact in frames; a longer phoneme is in contact in the middle half of its frames. A shorter
- * one borrows the frame before it and, if it has only one frame, the frame after it as well. A phoneme of
- * LABIAL_CONTACT_LONG frames or more, a hum or one with a pause before it, is in contact until its end, in all but its
- * first LABIAL_CONTACT_FRAMES frames. */
+/* A phoneme is in contact in the middle half of its frames, in LABIAL_CONTACT_FRAMES of them at least, and in all but
+ * LABIAL_CONTACT_OPEN of them, as a hum is. A shorter one borrows the frame before it and, if it has only one frame, the
+ * frame after it as well. */
 #define LABIAL_CONTACT_FRAMES 3
-#define LABIAL_CONTACT_LONG 15
+#define LABIAL_CONTACT_OPEN 7
 
 /* Frames over which a mouth comes to rest in a pause. The last frames of a pause lead to what follows instead; a
  * stream that begins with a pause begins at rest. */

@@ -117,7 +117,7 @@ unsigned oracle_label(const labial_model_t *const *models, const oracle_frame_t 
 /* ---- Floors, contact and rest, phoneme by phoneme over the whole of a stream (labial/model.h) -------------------- */
 
 /* The rules' numbers, as written down for the model's authors. */
-enum { SHORT = 3, LONG = 15, RESTING = 16 };
+enum { SHORT = 3, OPEN = 7, RESTING = 16 };
 
 /* FAP units that the lips part by: those of FAPs 51, 52, 55 to 58. */
 static const int PARTED[LABIAL_CHANNELS] = { 0, 0, 0, 28, 100, 0, 0, 25, 25, 86, 86, 0, 0 };
@@ -169,13 +169,11 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
 }
 
 /* Whether a contact of `whole` frames is made in frame `number`: in as many in the middle as half of them, rounded up, or
- * three; an odd frame is left at the end. Of those of a long one in all but the first three. */
+ * three, or all but seven; an odd frame is left at the end. */
 static int is_made(uint64_t number, uint64_t whole)
 {
     uint64_t outside = 0; /* frames */
-    if (whole >= LONG)
-        return number >= SHORT;
-    while (whole - outside > SHORT && 2 * (outside + 1) <= whole)
+    while (outside < OPEN && whole - outside > SHORT && 2 * (outside + 1) <= whole)
         outside++;
     return number >= outside / 2 && whole - number > outside - outside / 2;
 }

@@ -115,8 +115,8 @@ static void expect(const char *text, unsigned channel, int floor, const char *wa
 }
 
 /* By hand. A contact lasts for half of its phoneme, rounded up, but for three frames at least, which it borrows from what
- * is beside it; of more than 14 frames, a hum, from the fourth frame to its end. Would catch a frame too few or
- * too many, at either side, or one that lies elsewhere. */
+ * is beside it, and for all but seven. Would catch a frame too few or too many, at either side, or one that lies
+ * elsewhere. */
 TEST(contacts_have_their_frames)
 {
     static const struct {
@@ -132,19 +132,19 @@ TEST(contacts_have_their_frames)
         { "t3 p8 t3", ".....xxxx.....", NULL },
         { "t3 p13 t3", "......xxxxxxx......", NULL },
         { "t3 p14 t3", "......xxxxxxx.......", NULL },
-        { "t3 p15 t3", "......xxxxxxxxxxxx...", NULL },
+        { "t3 p15 t3", "......xxxxxxxx.......", NULL },
         { "t1 p1 t1 p1 t1", "xxxxx", NULL },
         { "t3 p1 p1 t3", "..xxx...", NULL }, /* two that follow one another are one contact */
         { "t3 p9 p1 t3", ".....xxxxx..x...", NULL },
         { "t3 p3 p3 p3 p3 t3", "...xxxxxxxxxxxx...", NULL },
-        { "t2 o1 t2", ".....", NULL },                       /* a plain floor is none */
+        { "t2 o1 t2", ".....", NULL }, /* a plain floor is none */
         { "t3 f2 p1 t3", "....xxx..", "..xxx...." },
         { "t3 f4 p4 t3", ".......xxx....", "...xxx........" },
         { "f1 p1", "xx", "xx" },
         { "p1", "x", NULL }, /* there is nothing to borrow before a stream's first frame and behind its last */
         { "p1 t3", "xx..", NULL },
         { "t3 p2", "..xxx", NULL },
-        { "p20", "...xxxxxxxxxxxxxxxxx", NULL },
+        { "p20", "...xxxxxxxxxxxxx....", NULL },
         { "_20 p1 _20", "...................xxx...................", NULL },
         { "_2 p1 _2", ".xxx.", NULL },
 #if LABIAL_MODELS > 1

@@ -100,7 +100,7 @@ def test_streams_reach_the_edge_cases(
     assert len(frames["minutes"]) > 120 * 50 and max(push.milliseconds for push in pushes("endless")) == DURATION_MAX
     stops = {name: {push.milliseconds // 20 for push in pushes(name) if tables["speech"].contact[push.phoneme].any()}
              for name in ("short_stops", "long_stop")}
-    assert {1, 2, 3} <= stops["short_stops"] and {contact.LONG - 1, contact.LONG, 20} <= stops["long_stop"]
+    assert {1, 2, 3} <= stops["short_stops"] and {2 * contact.OPEN, 2 * contact.OPEN + 1, 20} <= stops["long_stop"]
     graded = {number for number, label in enumerate(models["laughter"].phonemes) if label.endswith(("_soft", "_loud"))}
     assert graded and graded <= {push.phoneme for push in pushes("graded")}
     lengths = {sum(run.counts) for part in by_name["quick_switches"].parts for run in regenerate.runs(part.pushes, 50)}

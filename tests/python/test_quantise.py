@@ -56,7 +56,7 @@ def test_limits_are_the_librarys() -> None:
         "PHONEMES_MAX": LIMITS["phonemes"], "CLASSES_MAX": LIMITS["classes"], "STATES_MAX": LIMITS["states"],
         "PHONEME_COMPONENTS_MAX": LIMITS["components"], "KERNEL_TAPS_MAX": LIMITS["taps"],
         "SEARCH_STRIDE_MAX": LIMITS["stride"], "REACH": LIMITS["reach"], "CHANNELS": CHANNELS,
-        "CONTACT_FRAMES": contact.FRAMES, "CONTACT_LONG": contact.LONG,
+        "CONTACT_FRAMES": contact.FRAMES, "CONTACT_OPEN": contact.OPEN,
         "REST_FRAMES": contact.REST, "DURATION_Z_MAX": fixed.DURATION_Z_MAX, "EMISSION_Z_MAX": fixed.EMISSION_Z_MAX,
         "NAMES_FORMAT": emit.NAMES_FORMAT, "RIG_FORMAT": table.FORMAT,
         "RIG_WEIGHT_SUM_MAX": table.WEIGHT_SUM_MAX, "RIG_GAIN_MAX": table.GAIN_MAX,

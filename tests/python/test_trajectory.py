@@ -176,12 +176,13 @@ def test_floors_hold_where_contact_is() -> None:
     assert deep.tolist() == [[-50.0, -80.0]] * 2
 
 
-def test_a_long_closure_holds_its_last_frames_alone() -> None:
-    """Fifteen frames have swallowed a pause: the lips meet for the last eight. Fourteen are held throughout."""
-    first, second, contact = shut((LIPS, 15))
-    assert contact == [False] * 7 + [True] * 8 and first == [0.0] * 7 + [40.0] * 8
-    assert second == [10.0] * 15  # what is no contact stays
-    assert shut((LIPS, 14))[2] == [False] * 3 + [True] * 7 + [False] * 4  # of fourteen the middle half
+def test_a_hum_stays_closed_but_for_seven_frames() -> None:
+    """Of fourteen frames these are half."""
+    first, second, contact = shut((LIPS, 30))
+    assert contact == [False] * 3 + [True] * 23 + [False] * 4 and first == [40.0 * closed for closed in contact]
+    assert second == [10.0] * 30  # what is no contact stays
+    assert shut((LIPS, 15))[2] == [False] * 3 + [True] * 8 + [False] * 4
+    assert shut((LIPS, 14))[2] == [False] * 3 + [True] * 7 + [False] * 4
 
 
 def test_a_longer_closure_holds_its_middle() -> None:

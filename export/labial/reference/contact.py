@@ -1,11 +1,10 @@
 """Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
 
 In contact a target does not fall below its floor, and equation 3 ties the frame to it firmly. A phoneme is in contact
-in the middle half of its frames, but in FRAMES of them at least; a shorter one borrows the frame before it and, if it
-has only one frame, the frame after it as well. A phoneme of LONG frames or more, a hum or one with a pause before it,
-is in contact until its end, in all but its first FRAMES frames. Where at most FRAMES frames lie between two contacts,
-the lips part by PARTED in those that neither borrows, lest the two become one. In a pause the mouth comes to rest,
-except in the last frames, which lead to what follows.
+in the middle half of its frames, in FRAMES of them at least, and in all but OPEN of them, as a hum is; a shorter one
+borrows the frame before it and, if it has only one frame, the frame after it as well. Where at most FRAMES frames lie
+between two contacts, the lips part by PARTED in those that neither borrows, lest the two become one. In a pause the
+mouth comes to rest, except in the last frames, which lead to what follows.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from labial.tables.fixed import CONTACT_FRAMES, POSITION_MAX
 
 #: Frames (``include/labial/model.h``).
 FRAMES = CONTACT_FRAMES
-LONG = 15
+OPEN = 7
 REST = 16
 #: Farther than contacts are looked for, frames.
 FAR = 2 * FRAMES
@@ -49,7 +48,7 @@ def raised(target: np.ndarray, labels: np.ndarray, length: np.ndarray, rest: np.
     makes[silence] = False
     behind, ahead = (_distance([label(sign * lag) for lag in range(1, FRAMES + 1)], makes, silence) for sign in (-1, 1))
     between = np.where(makes[labels] | (labels == silence), FAR, behind + ahead - 1)  # frames between two contacts
-    closing = np.where(whole < LONG, _in_the_middle(whole - left, whole), whole - left >= FRAMES) & (labels != silence)
+    closing = _in_the_middle(whole - left, whole) & (labels != silence)
     short = (label(1) != labels) & (label(1) != silence) & ~((label(1) == label(2)) & (label(2) == label(3)))
     single = (label(-1) != labels) & (label(-1) != silence) & (label(-1) != label(-2))
     own = contact[labels] & closing[:, None]
@@ -82,7 +81,7 @@ def _distance(labels: Sequence[np.ndarray], makes: np.ndarray, silence: int) -> 
 
 def _in_the_middle(frame: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """(T,) bool: whether frame (T,) of a phoneme of `whole` (T,) frames is one of those in its middle."""
-    held = np.maximum((whole + 1) // 2, FRAMES)
+    held = np.maximum(np.maximum((whole + 1) // 2, whole - OPEN), FRAMES)
     first = (whole - held) // 2
     return (frame >= first) & (frame < first + held)
 
