@@ -241,8 +241,20 @@ def test_player_requests_nothing() -> None:
                                           "img-src data:; media-src data:")  # fmt: skip
     drawing = MOUTH.read_text(encoding="utf-8")
     assert "</script" not in drawing and "<!--" not in drawing
-    for part in (text, drawing.replace("http://www.w3.org/2000/svg", "")):  # a name, which nothing fetches
-        assert not re.search(r"https?://|@import|\bfetch\(|XMLHttpRequest|WebSocket|sendBeacon|\bimport\b", part)
+    text += drawing.replace("http://www.w3.org/2000/svg", "")  # a name, which nothing fetches
+    assert not re.search(r"https?://|@import|\bfetch\(|XMLHttpRequest|WebSocket|EventSource", text)
+    assert not re.search(r"sendBeacon|\bimport\b", text)
+    for value in re.findall(r"""<[^>]*\b(?:src|srcset|href|data|poster|action)=["']?([^"'\s>]*)""", text):
+        assert value.startswith(("data:", "#")), value
+    assert not re.search(r"url\((?!#)", text)
+
+
+def test_controls_have_names() -> None:
+    """Drawing, button and scrubber have labels for those who do not see them."""
+    text = PLAYER.read_text(encoding="utf-8")
+    labels = re.findall(r'aria-label="([^"]*)"', text)
+    assert "Play" in labels and "Speed" in labels and any(label.startswith("Position") for label in labels)
+    assert re.search(r'<svg [^>]*aria-label="[^"]*mouth', MOUTH.read_text(encoding="utf-8"))
 
 
 def test_names_tell_files_apart(given: Path) -> None:
