@@ -25,8 +25,7 @@ NAMES = ("jaw", "upper_lip", "corners")
 def script(path: str) -> List[Tuple[str, str, int, int]]:
     """Model, label, first frame and end of each phoneme, 50 frames per second."""
     phonemes, begin = [], 0
-    for model, label, length in re.findall(r"\{ (SPEECH|LAUGHTER), \w+?_(?:EN|SYNTHETIC)_(\w+), (\d+) \}",
-                                           Path(path).read_text(encoding="ascii")):
+    for model, label, length in re.findall(r"\b([SL])\((\w+), (\d+)\)", Path(path).read_text(encoding="ascii")):
         end = begin + int(length)
         phonemes.append((model, label, (begin + 10) // 20, (end + 10) // 20))
         begin = end
@@ -97,14 +96,14 @@ def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
         return sum((faces[frame][1 + i] - lip["neutral"]) / (lip["full"] - lip["neutral"]) * reach
                    for i, (lip, reach) in enumerate(zip(lips, (560, 90))))
 
-    closures = [(begin, end) for model, label, begin, end in phonemes if model == "SPEECH" and label in "PBM"]
+    closures = [(begin, end) for model, label, begin, end in phonemes if model == "S" and label in "PBM"]
     expect(len(closures) == 6, "the script's p, b, m were not found")
     for begin, end in closures:
         least = min(opening(frame) for frame in range(begin, end))
         expect(least < 110, f"the lips stay {least:.0f} FAP units open in the closure at frame {begin}")
     widest = max(opening(frame) for frame in range(spoken))
     expect(widest > 450, f"the mouth opens by {widest:.0f} FAP units only")
-    laugh = min(begin for model, _, begin, _ in phonemes if model == "LAUGHTER")
+    laugh = min(begin for model, _, begin, _ in phonemes if model == "L")
     neutral = servos["corners"]["neutral"]
     rest = phonemes[-1][2]  # the silence that ends the laugh, in which the smile begins to fade
     expect(all(face[3] > neutral + 100 for face in faces[laugh + 15:rest]), "the laugh does not smile")

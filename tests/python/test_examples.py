@@ -376,9 +376,9 @@ def script() -> List[Tuple[str, int, int]]:
     """Label, first frame and end of each phoneme of examples/rig/script.c, 50 frames per second."""
     text = (SOURCE / "examples" / "rig" / "script.c").read_text()
     phonemes, begin = [], 0
-    for model, label, length in re.findall(r"\{ (SPEECH|LAUGHTER), \w+?_(?:EN|SYNTHETIC)_(\w+), (\d+) \}", text):
+    for model, label, length in re.findall(r"\b([SL])\((\w+), (\d+)\)", text):
         end = begin + int(length)
-        phonemes.append((label if model == "SPEECH" else label.lower(), (begin + 10) // 20, (end + 10) // 20))
+        phonemes.append((label if model == "S" else label.lower(), (begin + 10) // 20, (end + 10) // 20))
         begin = end
     return phonemes
 
