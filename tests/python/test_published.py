@@ -410,20 +410,6 @@ def test_laughs_have_their_boundaries_changed() -> None:
     assert 1 < sum(PHONE_SETS["laughter"].boundary) < len(PHONE_SETS["laughter"].boundary)
 
 
-@pytest.mark.slow
-def test_choices_writes_a_table(corpus, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    (tmp_path / "corpus").mkdir()
-    for item in corpus:
-        write_episode(tmp_path / "corpus", item)
-    assert choices.main([str(tmp_path / "corpus"), "--splits", "1", "--jobs", "1", "-o", str(tmp_path / "t.md")]) == 0
-    lines = (tmp_path / "t.md").read_text().splitlines()
-    assert lines[0] == "| choice | diff | correlation | amplitude | closure | jitter | seam |"
-    assert len(lines) == 2 + len(CHOICES["speech"]) and all(line.count("|") == 8 for line in lines)
-    assert capsys.readouterr().out == "\n".join(lines) + "\n"
-    assert choices.main([str(tmp_path / "nothing"), "-o", str(tmp_path / "t.md")]) == 1
-    assert "nothing: no such folder" in capsys.readouterr().err
-
-
 # ---- Labial's departures from the published method -------------------------------------------------------------------
 
 
@@ -446,16 +432,17 @@ def test_units_of_a_published_model_are_the_published_ones(corpus, training) -> 
 
 
 @pytest.mark.slow
-def test_departures_writes_a_table(corpus, tmp_path: Path,
-                                    capsys: pytest.CaptureFixture) -> None:
+@pytest.mark.parametrize("command, head, variants", [(choices, "choice", len(CHOICES["speech"])),
+                                                     (departures, "taken back", 1 + len(DEPARTURES))])
+def test_variants_are_a_table(corpus, tmp_path: Path, capsys: pytest.CaptureFixture, command, head: str,
+                              variants: int) -> None:
     (tmp_path / "corpus").mkdir()
     for item in corpus:
         write_episode(tmp_path / "corpus", item)
-    options = ["--splits", "1", "--jobs", "1", "-o", str(tmp_path / "t.md")]
-    assert departures.main([str(tmp_path / "corpus"), *options]) == 0
+    assert command.main([str(tmp_path / "corpus"), "--splits", "1", "--jobs", "1", "-o", str(tmp_path / "t.md")]) == 0
     lines = (tmp_path / "t.md").read_text().splitlines()
-    assert lines[0] == "| taken back | diff | correlation | amplitude | closure | jitter | seam |"
-    assert len(lines) == 3 + len(DEPARTURES) and all(line.count("|") == 8 for line in lines)
+    assert lines[0] == f"| {head} | diff | correlation | amplitude | closure | jitter | seam |"
+    assert len(lines) == 2 + variants and all(line.count("|") == 8 for line in lines)
     assert capsys.readouterr().out == "\n".join(lines) + "\n"
-    assert departures.main([str(tmp_path / "nothing"), "-o", str(tmp_path / "t.md")]) == 1
+    assert command.main([str(tmp_path / "nothing"), "-o", str(tmp_path / "t.md")]) == 1
     assert "nothing: no such folder" in capsys.readouterr().err

@@ -247,7 +247,7 @@ def run_split(task: Task) -> List[Dict[str, float]]:
 def main(arguments: Optional[List[str]] = None) -> int:
     """The command line; see the module."""
     return compare("choices", __doc__.split("\n")[0], "choice",
-                         lambda kind: [choice.title for choice in CHOICES[kind]], run_split, 4, arguments)
+                   lambda kind: [choice.title for choice in CHOICES[kind]], run_split, 4, arguments)
 
 
 if __name__ == "__main__":
