@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 from labial.errors import LabialError
+from labial.files.outputs import writing
 from labial.see.player import player
 
 
@@ -27,7 +28,11 @@ def main() -> int:
     try:
         motion = json.loads(options.motion.read_text(encoding="utf-8"))
         page = player(options.title, motion["fps"], motion["frames"], motion["phonemes"], audio=options.sound)
-        options.page.write_text(page, encoding="utf-8")
+        with writing(options.page, "utf-8") as file:
+            file.write(page)
+    except (ValueError, KeyError, TypeError) as error:
+        print(f"page: {options.motion}: not what labial-demo prints: {error}", file=sys.stderr)
+        return 1
     except (LabialError, OSError) as error:
         print(f"page: {error}", file=sys.stderr)
         return 1
