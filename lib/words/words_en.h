@@ -45,7 +45,7 @@
 extern "C" {
 #endif
 
-/* The tables, 38873 bytes and the structure that points to them. */
+/* The tables, 38857 bytes and the structure that points to them. */
 extern const labial_words_model_t words_en;
 
 #ifdef __cplusplus

@@ -130,7 +130,7 @@ def test_training_is_the_same_each_time(small: Path, tmp_path: Path, capsys: pyt
     found = tables.load(tmp_path / "a.npz")
     assert found.leaves <= 1200 and len(found.exceptions) == 150
     known = dictionary.pronunciations(dictionary.read_dictionary(small))
-    assert all(tables.phonemes(found, word) in known[word] for word in found.exceptions)
+    assert all(tables.phonemes(found, word) in known[word] for word in found.exceptions if word not in training.SOUNDS)
     assert training.score(found, known)["phonemes"] > 90.0
     (tmp_path / "main.c").write_text('#include "mine.h"\n'
                                      "int main(void) { return mine.format != LABIAL_WORDS_FORMAT; }\n")
@@ -422,7 +422,7 @@ def test_weights_are_worked_by_hand() -> None:
 
 def test_a_changed_exception_is_seen(trained: tables.WordTables) -> None:
     """The tests above can fail: another exception gives other bytes and other phonemes."""
-    word = next(iter(trained.exceptions))
+    word = next(word for word in trained.exceptions if word not in training.SOUNDS)
     other = replace(trained, exceptions={**trained.exceptions, word: ((0, 0),)})
     assert packing.pack(other).patches != packing.pack(trained).patches
     assert tables.phonemes(other, word) != tables.phonemes(trained, word)

@@ -9,7 +9,7 @@ import numpy as np
 from labial.corpus.phonesets import SPEECH
 from labial.errors import ModelError
 from labial.words.alignment import align, learn, loosened
-from labial.words.dictionary import LETTERS, Entry, pronunciations
+from labial.words.dictionary import LETTERS, PHONEMES, Entry, letters_of, pronunciations
 from labial.words.packing import multiplier_for
 from labial.words.tables import WordTables, labels_of
 from labial.words.tables import phonemes as spoken
@@ -22,6 +22,10 @@ ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-20
                "rights reserved.")
 
 
+#: Sounds that dictionaries lack, or have otherwise than lips make them: the h of hmm is spoken with closed lips.
+SOUNDS = {"hm": ("M",), "hmm": ("M",), "hmmm": ("M",), "hmmmm": ("M",), "hmph": ("M", "F"), "psst": ("P", "S", "T"),
+          "pst": ("P", "S", "T"), "pfft": ("P", "F", "T"), "pft": ("P", "F", "T"), "pff": ("P", "F")}
+
 Report = Callable[[str], None]
 Sounds = Sequence[Optional[Tuple[int, ...]]]
 
@@ -32,11 +36,15 @@ def _silent(_: str) -> None:
 
 def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAVES, exceptions: int = EXCEPTIONS,
           report: Optional[Report] = None) -> WordTables:
-    """The tables of a dictionary; of the `common` words, in their order, the first `exceptions` that the trees read
-    wrongly become exceptions. `report` is told what is being done."""
+    """The tables of a dictionary; of SOUNDS and the `common` words, in their order, the first `exceptions` that the
+    trees read wrongly become exceptions. `report` is told what is being done."""
     report = report or _silent
     tables, aligned, loose = _trees(entries, leaves, report)
-    found = _exceptions(tables, entries, _completed(entries, aligned, loose), common, exceptions)
+    known = [Entry(word, letters_of(word), tuple(map(PHONEMES.index, sounds)), 0) for word, sounds in SOUNDS.items()]
+    pairs = [(entry, sounds) for entry, sounds in zip(entries, aligned) if entry.word not in SOUNDS]
+    known += [entry for entry, _ in pairs]
+    completed = _completed(known, [None] * len(SOUNDS) + [sounds for _, sounds in pairs], loose)
+    found = _exceptions(tables, known, completed, [*SOUNDS, *common], exceptions)
     report(f"{tables.leaves} leaves, {len(tables.sounds)} labels, {len(found)} exceptions")
     about: Dict[str, Any] = {"entries": len(entries), "words": sum(entry.variant == 0 for entry in entries),
                              "not_aligned": sum(item is None for item in aligned), "leaves": leaves,
