@@ -68,8 +68,9 @@ def choose(meshes: List[Mesh], where: str) -> Mesh:
     best = max(meshes, key=score)
     if score(best) < 0.0:
         names = list(meshes[0].shapes)
-        raise DataError(where, None, "no shape opens the mouth: jawOpen, mouthOpen, viseme_aa, Fcl_MTH_A or aa is needed; "
-                        f"there are {', '.join(names[:12])}{' ...' if len(names) > 12 else ''}. Rename the one that does")
+        more = ", ".join(names[:12]) + (" ..." if len(names) > 12 else "")
+        raise DataError(where, None, "no shape opens the mouth: jawOpen, mouthOpen, viseme_aa, Fcl_MTH_A or aa is "
+                        f"needed; there are {more}. Rename the one that does")
     return best
 
 

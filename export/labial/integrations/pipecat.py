@@ -95,8 +95,8 @@ class LipsProcessor(FrameProcessor):
 
     Args:
         show: is awaited with each frame of the mouth; an exception that it raises is logged, and lips go on. delay:
-        seconds from a piece of sound's leaving the transport until it is heard; below zero if the transport passes it on
-        afterwards. options: those of :class:`labial.Voice`.
+        seconds from a piece of sound's leaving the transport until it is heard; below zero if the transport passes it
+        on afterwards. options: those of :class:`labial.Voice`.
     """
 
     def __init__(self, show: Optional[Show] = None, *, delay: float = 0.0, **options: Any) -> None:
