@@ -263,7 +263,7 @@ def test_react_takes_over_what_a_server_wrote(project: Path, browser: Browser) -
     """The component of docs/frameworks.md: React complains of every attribute that an element adds to the server's."""
     (project / "react-lips.tsx").write_text(next(
         block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name == "react-lips.tsx"))
-    speaker = '<Speaker sound="" segments={[{ start: 0, end: 1, label: "AA" }]} />'
+    speaker = '<Speaker sound="data:," segments={[{ start: 0, end: 1, label: "AA" }]} />'
     (project / "server.tsx").write_text('import { renderToString } from "react-dom/server";\n'
                                         'import { Speaker } from "./react-lips";\n'
                                         f"console.log(JSON.stringify(renderToString({speaker})));\n")
@@ -272,12 +272,13 @@ def test_react_takes_over_what_a_server_wrote(project: Path, browser: Browser) -
                                         "window.errors = [];\n"
                                         "console.error = (...told) => window.errors.push(told.join(' '));\n"
                                         f"hydrateRoot(document.querySelector('main'), {speaker});\n")
-    for name, options in (("server", ["--platform=node"]), ("client", ["--format=esm"])):
-        run(tools() / "node_modules" / ".bin" / "esbuild", project / f"{name}.tsx", "--bundle", "--jsx=automatic",
-            '--define:process.env.NODE_ENV="development"', f"--outfile={project / name}.cjs", "--log-level=error", *options)
+    for entry, out, options in (("server.tsx", "server.cjs", ["--platform=node"]),
+                                ("client.tsx", "client.js", ["--format=esm"])):
+        run(tools() / "node_modules" / ".bin" / "esbuild", project / entry, "--bundle", "--jsx=automatic",
+            '--define:process.env.NODE_ENV="development"', f"--outfile={project / out}", "--log-level=error", *options)
     written = printed(node(22), project / "server.cjs")
     (project / "index.html").write_text(f'<link rel="icon" href="data:,"><main>{written}</main>'
-                                        '<script type="module" src="client.cjs"></script>')
+                                        '<script type="module" src="client.js"></script>')
     with served(project) as site:
         page = browser.page(f"{site}/index.html")
         page.wait_for("document.querySelector('labial-face').track?.duration > 1")
