@@ -474,4 +474,5 @@ def test_the_head_moves_on_without_a_sound(tmp_path: Path, opening: Path, avatar
         page.wait_for("document.querySelector('input').value === '4'", 20)
         page.wait_for("document.querySelector('button').textContent === 'Play'", 20)
     assert page.evaluate("document.querySelector('input').ariaValueText") == "0.08 s"
+    assert page.evaluate("document.querySelector('output').hidden") == (sound == wav())
     assert not page.errors()
