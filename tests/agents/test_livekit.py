@@ -93,7 +93,7 @@ def test_a_clock_that_does_not_pause_goes_on() -> None:
 
 
 def test_an_interruption_between_segments_cancels_no_caller() -> None:
-    """A call that waited for the end of the segment before was cancelled with it: its task ended, and its sound was lost."""
+    """A call that waited for the end of the segment before was cancelled with it: its sound was lost."""
     full = asyncio.Event()
 
     class Output(livekit_agent.StandInOutput):
