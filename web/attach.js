@@ -1,5 +1,5 @@
 // Finds out which weights a loaded avatar takes, and moves it. modules.d.ts documents it.
-import { LabialError, heard } from "./memory.js";
+import { LabialError, heard, shown } from "./memory.js";
 
 /** Milliseconds in which a mouth comes to rest. */
 const CLOSING = 200;
@@ -45,7 +45,7 @@ export class Head {
 
     set source(source) {
         if (source && typeof source.at !== "function") {
-            throw new TypeError("the source is none that has at(): a track, a hearing or a voice");
+            throw new TypeError(`the source is ${shown(source)}, which has no at(): set what a promise resolves to`);
         }
         if (source?.output !== undefined && source.output !== this.output) {
             const [given, taken] = [source, this].map(({ output }) => (typeof output === "string" ? output : "a rig's"));
@@ -62,6 +62,7 @@ export class Head {
     }
 
     update(seconds) {
+        if (this.#source?.closed) this.source = null; // by its owner
         const source = this.#source;
         if (!source) {
             if (this.#closing) this.#set(this.#closing());
@@ -142,8 +143,11 @@ export function attach(avatar, { output } = {}) {
     if (!fits) throw new LabialError(`the avatar has none of the shapes of ${JSON.stringify(output)}`);
     if (!kind) {
         const names = [...new Set(meshes.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
-        throw new LabialError(names.length ? `the avatar's shapes are neither ARKit's nor visemes: ${names.slice(0, 8).join(", ")}` +
-            `${names.length > 8 ? ", ..." : ""}; labial fit makes a rig for them` : "the avatar has no shapes (morph targets)");
+        if (!names.length) throw new LabialError("the avatar has no shapes (morph targets)");
+        const part = KINDS.find(([one, all]) => all.some(has(move, one)))?.[0];
+        throw new LabialError(`the avatar's shapes are ${part ? "too few of ARKit's or of visemes" : "neither ARKit's nor visemes"}: ` +
+            `${names.slice(0, 8).join(", ")}${names.length > 8 ? ", ..." : ""}; labial fit makes a rig for them` +
+            (part ? `, and { output: "${part}" } moves those that there are` : ""));
     }
     return new Head(kind, meshes, move);
 }

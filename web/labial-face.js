@@ -22,6 +22,7 @@ const STYLE = `
 :host(:focus-visible) { outline: 3px solid Highlight; outline-offset: 3px }
 div, svg { display: block; width: 100%; height: 100% }
 p { position: absolute; inset: auto 4% 4%; margin: 0 auto; width: fit-content; max-width: 92%; box-sizing: border-box;
+  max-height: 60%; overflow: auto;
   padding: .3em .8em; border-radius: .5em; background: rgb(0 0 0 / .72); color: #fff; text-align: center;
   font: 600 1.1rem/1.35 system-ui, sans-serif; text-wrap: balance }
 p:empty { display: none }

@@ -382,7 +382,7 @@ export class LabialMouth extends Base {
 export function adopt(root, style) {
     const sheet = new (root.ownerDocument.defaultView ?? globalThis).CSSStyleSheet(); // another document takes no other
     sheet.replaceSync(style);
-    root.adoptedStyleSheets = [...root.adoptedStyleSheets, sheet];
+    root.adoptedStyleSheets = [...(root.adoptedStyleSheets ?? []), sheet]; // which jsdom lacks
 }
 
 /** Defines an element, unless a copy of the package, perhaps another version, has done so. */

@@ -133,7 +133,7 @@ declare module "labial/attach.js" {
         /** The meshes that have shapes: head, teeth, beard. */
         readonly meshes: readonly any[];
         /** What is spoken: a track, a hearing or a voice of this output, or whatever gives weights; null closes the mouth
-         * within a fifth of a second. */
+         * within a fifth of a second, and so does a source that is closed: then there is none. */
         get source(): Source | null;
         set source(source: Source | null);
         /** The sound whose time counts, as heard() tells it; without it that of the source's own clock, or what update() is

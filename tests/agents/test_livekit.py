@@ -92,6 +92,30 @@ def test_a_clock_that_does_not_pause_goes_on() -> None:
     assert 2 <= asyncio.run(clock()) < 3
 
 
+def test_an_interruption_between_segments_cancels_no_caller() -> None:
+    """A call that waited for the end of the segment before was cancelled with it: its sound was lost."""
+    full = asyncio.Event()
+
+    class Output(livekit_agent.StandInOutput):
+        async def capture_frame(self, frame: rtc.AudioFrame) -> None:
+            await full.wait()
+
+    async def run() -> None:
+        lips = livekit_agent.LipsOutput(Output())
+        sound = rtc.AudioFrame(bytes(2 * 480), 48000, 1, 480)
+        lips._resampler = rtc.AudioResampler(48000, stand_in.RATE)
+        lips._resampler.push(sound)
+        lips.flush()
+        waiting = asyncio.create_task(lips.capture_frame(sound))
+        await asyncio.sleep(0.01)
+        lips.clear_buffer()
+        full.set()
+        await asyncio.wait([waiting], timeout=5)
+        assert waiting.done() and not waiting.cancelled() and waiting.exception() is None
+
+    asyncio.run(run())
+
+
 def test_a_segment_at_another_rate_is_passed_on_whole() -> None:
     """What a resampler keeps of a segment would be heard before the next one."""
     class Output(livekit_agent.StandInOutput):

@@ -110,9 +110,9 @@ class Behind(FrameProcessor):
 Script = Callable[[PipelineWorker], Awaitable[None]]
 
 
-async def follow(script: Script, output: Output, tts: Any = None, delay: float = -0.04) -> Behind:
+async def follow(script: Script, output: Output, tts: Any = None, delay: float = -0.04, show: Any = None) -> Behind:
     """A whole pipeline, in which `script` makes the bot speak."""
-    behind, lips = Behind(), LipsProcessor(delay=delay)
+    behind, lips = Behind(), LipsProcessor(show, delay=delay)
     pipeline = Pipeline([tts or pipecat_bot.StandInTTS(), lips, output, lips.heard, behind])
     worker = PipelineWorker(pipeline, params=PipelineParams(audio_out_sample_rate=stand_in.RATE), enable_rtvi=False)
     runner = WorkerRunner(handle_sigint=False)
@@ -165,6 +165,24 @@ def test_lips_follow_words_in_step_with_the_sound() -> None:
     late = [at - output.begun[frame.number // 2] - frame.number % 2 / 50 for at, frame in behind.frames[: 2 * spoken]]
     print("frames are late by ms:", [round(1000 * sorted(late)[k]) for k in (0, spoken, -1)])
     assert min(late) > -0.03 and sorted(late)[-5] < 0.06
+
+
+def test_a_callback_that_fails_does_not_stop_the_lips(caplog: pytest.LogCaptureFixture) -> None:
+    """As where an avatar's connection is lost for a while: one message, and all later frames."""
+    shown: List[int] = []
+
+    async def show(frame: labial.Frame) -> None:
+        if 10 <= frame.number < 20:
+            raise ConnectionError("lost")
+        shown.append(frame.number)
+
+    async def script(worker: PipelineWorker) -> None:
+        await worker.queue_frame(TTSSpeakFrame(TEXT))
+
+    behind = asyncio.run(follow(script, Output(), show=show))
+    numbers = [frame.number for _, frame in behind.frames]
+    assert shown == [number for number in numbers if not 10 <= number < 20] and len(shown) > 80
+    assert [message for message in caplog.messages if "show()" in message] == ["show() failed for frame 10; lips go on"]
 
 
 def test_texts_follow_each_other() -> None:

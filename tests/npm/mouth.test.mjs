@@ -124,13 +124,14 @@ test("a head whose jaw hardly opens is moved by its visemes", () => {
 
 test("what is no avatar, and one that nothing is known of, is an error", () => {
     const errors = [[{}, TypeError, /^the avatar is none/], [scene(), undefined, /has no shapes/],
-        [scene(["smile", "beak"]), undefined, /neither ARKit's nor visemes: smile, beak; labial fit/]];
+        [scene(["smile", "beak"]), undefined, /neither ARKit's nor visemes: smile, beak; labial fit/],
+        [scene(["jawOpen", "grin"]), undefined, /too few of ARKit's or of visemes: jawOpen, grin; .* { output: "arkit" } moves/]];
     for (const [avatar, kind, message] of errors) assert.throws(() => attach(avatar), { message, ...(kind && { name: kind.name }) });
     const head = attach(scene(["smile", "beak"]), { output: labial.rig({ labial: "rig", name: "bird", outputs: { beak: {
         weights: new Array(13).fill(0), gain: 4096, neutral: 0, minimum: 0, maximum: 1000, invert: 0, contact: 0, closed: 0 } } }) });
     head.show({ beak: 0.5, tail: 1 });
     assert.deepEqual(head.meshes[0].morphTargetInfluences, [0, 0.5]);
-    assert.throws(() => { head.source = {}; }, { name: "TypeError", message: /^the source is none/ });
+    assert.throws(() => { head.source = Promise.resolve(); }, { name: "TypeError", message: /^the source is .*a promise resolves to$/ });
     const arkit = ["jawOpen", "mouthFunnel", "mouthPucker", "mouthClose"];
     for (const output of ["arkitt", "oculus"]) {
         assert.throws(() => attach(scene(arkit), { output }), { name: "LabialError", message: /^the avatar has none of the shapes/ });

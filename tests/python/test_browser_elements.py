@@ -62,8 +62,8 @@ def opened(folder: Path, browser: Browser) -> Iterator[Any]:
     """Opens one of the pages."""
     with served(folder) as site:
 
-        def opened(name: str) -> Page:
-            page = browser.page(f"{site}/{name}.html")
+        def opened(name: str, before: str = "") -> Page:
+            page = browser.page(f"{site}/{name}.html", before)
             page.wait_for("window.ready")
             return page
 
@@ -91,6 +91,15 @@ def test_strict_policies_and_two_copies(opened: Any) -> None:
     assert page.evaluate("face instanceof LabialFace && customElements.get('labial-face') === LabialFace")
     assert page.evaluate("getComputedStyle(face.shadowRoot.querySelector('.teeth')).fill") != "rgb(0, 0, 0)"
     assert [error for error in page.errors() if "data:" not in error] == []  # the icon is data, which is refused
+
+
+def test_a_page_that_is_no_browsers(opened: Any) -> None:
+    """jsdom, in which components are tested, has neither matchMedia() nor adopted style sheets: a face moves there."""
+    page = opened("strict", "delete window.matchMedia; delete ShadowRoot.prototype.adoptedStyleSheets")
+    assert page.evaluate("window.matchMedia === undefined")
+    line = "face.shadowRoot.querySelector('path.line').getAttribute('d')"
+    assert page.evaluate(f"const rest = {line}; face.show(new Array(13).fill(200)); rest !== {line}")
+    assert [error for error in page.errors() if "data:" not in error] == []
 
 
 def test_without_webassembly_the_policy_is_named(opened: Any) -> None:

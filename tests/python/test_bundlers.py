@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import labial
-from browser import Browser, served
+from browser import CHROMIUM, REASON, Browser, served
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
@@ -201,7 +201,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the packages installed and node's types."""
     folder = tmp_path_factory.mktemp("types") / "project"
     install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
-    for name in ("@types", "@vue", "csstype", "react", "undici-types", "vue"):
+    for name in ("@types", "@vue", "csstype", "react", "react-dom", "scheduler", "undici-types", "vue"):
         (folder / "node_modules" / name).symlink_to(tools() / "node_modules" / name)
     (folder / "package.json").write_text('{ "type": "module" }')
     return folder
@@ -256,6 +256,33 @@ def _wrong(project: Path, framework: str) -> List[str]:
         "// @ts-expect-error a track is no text\n"
         'export const wrong: Props = { track: "hello" };\n')  # fmt: skip
     return ["vue-wrong.ts"]
+
+
+@pytest.mark.skipif(not CHROMIUM, reason=REASON)
+def test_react_takes_over_what_a_server_wrote(project: Path, browser: Browser) -> None:
+    """The component of docs/frameworks.md: React complains of every attribute that an element adds to the server's."""
+    (project / "react-lips.tsx").write_text(next(
+        block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name == "react-lips.tsx"))
+    speaker = '<Speaker sound="data:," segments={[{ start: 0, end: 1, label: "AA" }]} />'
+    (project / "server.tsx").write_text('import { renderToString } from "react-dom/server";\n'
+                                        'import { Speaker } from "./react-lips";\n'
+                                        f"console.log(JSON.stringify(renderToString({speaker})));\n")
+    (project / "client.tsx").write_text('import { hydrateRoot } from "react-dom/client";\n'
+                                        'import { Speaker } from "./react-lips";\n'
+                                        "window.errors = [];\n"
+                                        "console.error = (...told) => window.errors.push(told.join(' '));\n"
+                                        f"hydrateRoot(document.querySelector('main'), {speaker});\n")
+    for entry, out, options in (("server.tsx", "server.cjs", ["--platform=node"]),
+                                ("client.tsx", "client.js", ["--format=esm"])):
+        run(tools() / "node_modules" / ".bin" / "esbuild", project / entry, "--bundle", "--jsx=automatic",
+            '--define:process.env.NODE_ENV="development"', f"--outfile={project / out}", "--log-level=error", *options)
+    written = printed(node(22), project / "server.cjs")
+    (project / "index.html").write_text(f'<link rel="icon" href="data:,"><main>{written}</main>'
+                                        '<script type="module" src="client.js"></script>')
+    with served(project) as site:
+        page = browser.page(f"{site}/index.html")
+        page.wait_for("document.querySelector('labial-face').track?.duration > 1")
+        assert page.evaluate("errors") == [] == page.errors()
 
 
 def test_code_of_pages_compiles(project: Path) -> None:

@@ -360,3 +360,17 @@ def test_page_says_that_its_sound_cannot_be_played(browser: Browser, tmp_path: P
     page.wait_for("!document.getElementById('mute').hidden")
     page.evaluate("document.getElementById('play').click()")
     page.wait_for("labialPlayer.position > 10")
+
+
+@needs_chromium
+def test_page_on_a_phone(browser: Browser, tmp_path: Path) -> None:
+    """Face and controls are seen at once, and screen readers do not read the numbers of every frame."""
+    (tmp_path / "a.csv").write_text(frames(100))
+    title = "Maybe people hum by the pool. " * 3
+    assert main(["page", str(tmp_path / "a.csv"), "--title", title, "-o", str(tmp_path / "a.html")]) == 0
+    page = browser.page((tmp_path / "a.html").as_uri())
+    page.command("Emulation.setDeviceMetricsOverride", {"width": 375, "height": 667, "deviceScaleFactor": 1,
+                                                        "mobile": True})
+    page.wait_for("innerWidth === 375 && document.getElementById('play').getBoundingClientRect().bottom < 667")
+    assert page.evaluate("document.documentElement.scrollWidth") == 375
+    assert page.evaluate("[...document.querySelectorAll('output')].map((one) => one.ariaLive)") == ["off"] * 3

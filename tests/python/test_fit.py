@@ -82,6 +82,14 @@ def test_where_a_mesh_stands_changes_nothing(tmp_path: Path) -> None:
     assert moved.moves["chin"] == pytest.approx(head.moves["chin"], abs=1e-3)
 
 
+def test_a_head_that_faces_away_is_doubted() -> None:
+    vertices, triangles, shapes = made_head()
+    for sign in (1.0, -1.0):
+        turn = np.array([sign, 1.0, sign])
+        mesh = Mesh("face", vertices * turn, triangles, {name: move * turn for name, move in shapes.items()})
+        assert ("seems to face -z" in " ".join(read_head([mesh], "a.glb", {}).doubts)) == (sign < 0)
+
+
 @pytest.mark.slow
 @needs_runtime
 def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str], spoken: Motion) -> None:
@@ -168,11 +176,14 @@ def test_points_that_are_given(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 
 BROKEN: Dict[str, Callable[[Dict], None]] = {
-    "its meshes are compressed (EXT_meshopt_compression); unpack them first: npx @gltf-transform/cli copy a.glb":
+    "its meshes are compressed (EXT_meshopt_compression); unpack them first: npx @gltf-transform/cli copy '":
         lambda d: d.update(extensionsRequired=["EXT_meshopt_compression"]),
     "needs extensions that are not known here: ACME_mesh": lambda d: d.update(extensionsRequired=["ACME_mesh"]),
     "has no mesh with shapes": lambda d: d["meshes"][0]["primitives"][0].pop("targets"),
-    "no shape opens the mouth": lambda d: d["meshes"][0]["extras"].update(targetNames=list("bcdefghij")),
+    "or aa is needed; there are b, c, d, e, f, g, h, i, j. Rename the one that does":
+        lambda d: d["meshes"][0]["extras"].update(targetNames=list("bcdefghij")),
+    "moves nothing down, towards -y: in glTF y is up":
+        lambda d: d["nodes"][0].update(rotation=[0.5**0.5, 0, 0, 0.5**0.5]),
     "goes beyond its buffer": lambda d: d["accessors"][0].update(count=10**6),
     "its accessors unpack to 25,770,": lambda d: d["accessors"][0].update(count=1 << 30),
     "the triangles of mesh 0 are broken": lambda d: d["accessors"][1].update(count=5),
@@ -188,11 +199,23 @@ def test_broken_files(tmp_path: Path, capsys: pytest.CaptureFixture[str], messag
     document, binary = document_of(*made_head())
     document = copy.deepcopy(document)
     BROKEN[message](document)
-    (tmp_path / "a.glb").write_bytes(glb(document, binary))
-    assert main(["fit", str(tmp_path / "a.glb"), "-o", str(tmp_path / "b.toml")]) == 1
+    path = tmp_path / "my head" / "a.glb"
+    path.parent.mkdir()
+    path.write_bytes(glb(document, binary))
+    assert main(["fit", str(path), "-o", str(tmp_path / "b.toml")]) == 1
     error = capsys.readouterr().err
-    assert message in error and str(tmp_path / "a.glb") in error and error.count("\n") == 1
+    assert message in error and str(path) in error and error.count("\n") == 1
+    assert "npx" not in error or f"copy '{path}' '{path.parent}/a-plain.glb'" in error
     assert not (tmp_path / "b.toml").exists()
+
+
+@pytest.mark.parametrize("content, message", [
+    (b"version https://git-lfs.github.com/spec/v1\noid sha256:0", "a pointer of Git LFS: git lfs pull"),
+    (b"Kaydara FBX Binary  \0", "it begins neither with glTF nor with JSON"), (b"", "neither with glTF nor with JSON")])
+def test_files_of_other_kinds(tmp_path: Path, content: bytes, message: str) -> None:
+    (tmp_path / "a.glb").write_bytes(content)
+    with pytest.raises(DataError, match=message):
+        read_avatar(tmp_path / "a.glb")
 
 
 def test_any_bytes(tmp_path: Path) -> None:

@@ -444,3 +444,35 @@ def test_the_head_moves_in_a_browser(tmp_path: Path, opening: Path, avatar: Path
     page.evaluate("document.querySelector('button').click()")
     page.wait_for("document.querySelector('input').value === '4'", 20)
 
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
+@pytest.mark.skipif(not CHROMIUM, reason=REASON)
+@pytest.mark.parametrize("sound", [wav(), wav()[:20] + b"\x63\0" + wav()[22:]], ids=["short", "unknown"])
+def test_the_head_moves_on_without_a_sound(tmp_path: Path, opening: Path, avatar: Path, browser: Browser,
+                                           sound: bytes) -> None:
+    """Behind the end of a sound that is shorter than the motion, and where the browser does not play it. On a phone the
+    whole width of the head is seen, and a screen reader is told the time."""
+    out, three = tmp_path / "page.html", tools() / "node_modules" / "three"
+    (tmp_path / "a.wav").write_bytes(sound)
+    assert main(["page", str(opening), "--head", str(avatar), "--three", str(three), "--audio", str(tmp_path / "a.wav"),
+                 "-o", str(out)]) == 0
+    page = browser.page(out.as_uri())
+    page.command("Emulation.setDeviceMetricsOverride", {"width": 375, "height": 667, "deviceScaleFactor": 1,
+                                                        "mobile": True})
+    page.wait_for("window.labialHead && labialHead.camera.aspect < 1", 60)
+    across = page.evaluate("""(([mesh], camera) => {
+        const { count } = mesh.geometry.attributes.position;
+        const point = labialHead.middle.clone();
+        return Math.max(...Array.from({ length: count }, (_, i) => Math.abs(
+            mesh.getVertexPosition(i, point).applyMatrix4(mesh.matrixWorld).project(camera).x)));
+    })(labialHead.meshes[0], labialHead.camera)""")
+    assert 0.5 < across < 1
+    for _ in range(2):
+        page.evaluate("labialHead.show(0); document.querySelector('button').click()")
+        page.wait_for("document.querySelector('input').value === '4'", 20)
+        page.wait_for("document.querySelector('button').textContent === 'Play'", 20)
+    assert page.evaluate("document.querySelector('input').ariaValueText") == "0.08 s"
+    assert page.evaluate("document.querySelector('output').hidden") == (sound == wav())
+    assert not page.errors()

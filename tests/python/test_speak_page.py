@@ -124,6 +124,20 @@ def test_six_languages_are_heard_and_seen(page: Page) -> None:
     assert len(labels) > 60
 
 
+@pytest.mark.slow
+@needs_chromium
+@needs_tools
+def test_the_face_is_seen_however_long_the_text_is(page: Page) -> None:
+    """On a phone: neither the phonemes push it out, nor does the caption cover it."""
+    page.command("Emulation.setDeviceMetricsOverride", {"width": 375, "height": 667, "deviceScaleFactor": 1,
+                                                        "mobile": True})
+    page.evaluate("window.seen = [], text.value = 'Maybe people hum by the pool. '.repeat(40), form.requestSubmit()")
+    page.wait_for("face.caption.length > 1000")
+    height, caption, below = page.evaluate("""[face.offsetHeight, face.shadowRoot.querySelector('p').offsetHeight,
+        document.documentElement.scrollHeight]""")
+    assert height > 200 and caption < 0.65 * height and below <= 667
+
+
 # ---- What labial/espeak ----------------------------------------------------------------------------------------------
 
 

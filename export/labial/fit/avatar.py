@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
@@ -59,9 +60,10 @@ def _check(where: str, file: Gltf) -> None:
     required = [str(name) for name in file.document.get("extensionsRequired") or []]
     packed = [name for name in required if name in _COMPRESSED]
     if packed:
-        stem = Path(where)
+        path = Path(where)
+        copy = shlex.join([str(path), str(path.with_name(f"{path.stem}-plain{path.suffix}"))])
         raise DataError(where, None, f"its meshes are compressed ({', '.join(packed)}); unpack them first: "
-                        f"npx @gltf-transform/cli copy {stem.name} {stem.stem}-plain{stem.suffix}")
+                        f"npx @gltf-transform/cli copy {copy}")
     strange = [name for name in required if not name.startswith(_HARMLESS)]
     if strange:
         raise DataError(where, None, f"needs extensions that are not known here: {', '.join(strange)}")

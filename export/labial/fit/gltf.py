@@ -221,6 +221,10 @@ def objects(of: Dict[str, Any], key: str) -> List[Dict[str, Any]]:
 def _parts(data: bytes) -> Tuple[bytes, Optional[bytes]]:
     """The JSON, and the binary part of a .glb or None."""
     if data[:4] != b"glTF":  # whatever the file is called
+        if data.startswith(b"version https://git-lfs"):
+            raise ValueError("it is a pointer of Git LFS: git lfs pull fetches the file")
+        if not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
+            raise ValueError("it begins neither with glTF nor with JSON")
         return data, None
     _, version, _ = struct.unpack("<4sII", data[:12])
     if version != 2:

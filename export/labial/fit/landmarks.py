@@ -17,7 +17,7 @@ from labial.fit.avatar import Mesh
 from labial.fit.head import NEEDED, POINTS, USUAL_MNS, Head, from_points, plain
 
 #: Shapes that open the mouth, the plainest first; compared without case, prefixes and punctuation.
-_OPENERS = ("jawopen", "visemeaa", "fclmtha", "aa", "mouthopen", "a", "open")
+_OPENERS = ("jawopen", "visemeaa", "fclmtha", "aa", "mouthopen", "openmouth", "a", "open")
 #: How far an upper and a lower vertex go apart for each unit of their distance where a seam runs between them; times
 #: the mouth's whole opening divided by the face's width. In the lips' middle, and towards the corners.
 _TORN_MIDDLE, _TORN = 4.0, 15.0
@@ -67,8 +67,10 @@ def choose(meshes: List[Mesh], where: str) -> Mesh:
 
     best = max(meshes, key=score)
     if score(best) < 0.0:
-        raise DataError(where, None, "no shape opens the mouth: " + ", ".join(_OPENERS[:3]) + " or such a name is "
-                        f"needed, there are {', '.join(list(meshes[0].shapes)[:12])} ...")
+        names = list(meshes[0].shapes)
+        more = ", ".join(names[:12]) + (" ..." if len(names) > 12 else "")
+        raise DataError(where, None, "no shape opens the mouth: jawOpen, mouthOpen, viseme_aa, Fcl_MTH_A or aa is "
+                        f"needed; there are {more}. Rename the one that does")
     return best
 
 
@@ -96,7 +98,7 @@ class _Face:
         self.down = -mesh.shapes[name][first][:, 1].astype(np.float64)
         self.jaw = float(self.down.max())
         if not self.jaw > 0.0:
-            raise DataError(where, None, f"the shape {name!r} moves nothing down")
+            raise DataError(where, None, f"the shape {name!r} moves nothing down, towards -y: in glTF y is up")
         moving = np.linalg.norm(mesh.shapes[name][first], axis=1) > 0.02 * self.jaw
         self.size = float(np.ptp(self.points[moving][:, 0]))
         if not self.size > 0.0:
@@ -273,6 +275,17 @@ def _nose_and_chin(face: _Face, found: Dict[str, int]) -> None:
         found["chin"] = int(vertices[last])
 
 
+def _faces_away(mesh: Mesh) -> bool:
+    """Whether of what opens the middle protrudes further towards -z from the sides than towards z."""
+    name = opener(mesh)
+    assert name is not None
+    size = np.linalg.norm(mesh.shapes[name], axis=1)
+    x, _, z = mesh.vertices[size > 0.02 * size.max()].T
+    aside = np.abs(x - (x.min() + x.max()) / 2.0) / max(float(np.ptp(x)), _SMALLEST)
+    middle, sides = z[aside < 0.15], z[aside > 0.35]
+    return bool(len(middle) and len(sides) and sides.min() - middle.min() > middle.max() - sides.max())
+
+
 def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found:
     """The head of an avatar. `given` are vertices that the user names, by point. Implausible points are omitted, unless
     given, with a warning. Raises DataError for a number that is not a vertex, and if the lips are not found."""
@@ -315,6 +328,8 @@ def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found
             leave_out(("chin",), f"chin: {below:.2f} times as far below the mouth as the nose is above; left out")
     else:
         doubts.append("chin: not found; left out")
+    if _faces_away(mesh):
+        doubts.append("the head seems to face -z: glTF's face z, and of others wrong points are found; turn it round")
     factor, unit = scale_of(mouth_nose)
     if unit == "of unknown size":
         doubts.append("the head is of no human size: millimetres are those of a head with "

@@ -54,7 +54,10 @@ class LipsOutput(AudioOutput):
         """Takes words and the length of the sound, and passes it on."""
         await super().capture_frame(frame)
         if self._rest is not None:
-            await self._rest
+            rest = self._rest
+            await asyncio.wait([rest])  # an interruption cancels it, and not this call
+            if not rest.cancelled():
+                rest.result()
         if not self._segment:
             self._origin = self._queued = max(self._queued, self.clock() or 0.0)
             self._segment, self._started = True, False

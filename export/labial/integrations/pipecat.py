@@ -14,6 +14,7 @@ closes the mouth, and what is left of the interrupted answer is ignored.
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections import deque
 from dataclasses import dataclass
@@ -37,6 +38,7 @@ from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
 from labial.integrations.lips import Lips
 from labial.runtime import stream
 
+_logger = logging.getLogger("labial")
 #: Milliseconds in which the mouth closes when a pipeline is cancelled.
 _CLOSING = 200
 
@@ -92,8 +94,9 @@ class LipsProcessor(FrameProcessor):
     """Stands between the speech service and the transport's output.
 
     Args:
-        show: is awaited with each frame of the mouth. delay: seconds from a piece of sound's leaving the transport
-        until it is heard; below zero if the transport passes it on afterwards. options: those of :class:`labial.Voice`.
+        show: is awaited with each frame of the mouth; an exception that it raises is logged, and lips go on. delay:
+        seconds from a piece of sound's leaving the transport until it is heard; below zero if the transport passes it
+        on afterwards. options: those of :class:`labial.Voice`.
     """
 
     def __init__(self, show: Optional[Show] = None, *, delay: float = 0.0, **options: Any) -> None:
@@ -186,7 +189,15 @@ class _Heard(FrameProcessor):
             await asyncio.sleep(1 / self._voice.fps)
 
     async def _follow(self) -> None:
+        has_failed = False
         async for frame in self._voice.follow(self._clock):
             await self.push_frame(LipsFrame(frame.number, frame.faps, frame.visemes))
-            if self._show:
+            if not self._show:
+                continue
+            try:
                 await self._show(frame)
+                has_failed = False
+            except Exception:
+                if not has_failed:  # a lost connection fails 50 times a second
+                    _logger.exception("show() failed for frame %d; lips go on", frame.number)
+                has_failed = True

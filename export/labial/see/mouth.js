@@ -310,7 +310,7 @@ export function createFace(place) {
   build(place, FACE);
   const root = place.getRootNode(), sheet = new CSSStyleSheet();
   sheet.replaceSync(FACE_STYLE);
-  root.adoptedStyleSheets = [...root.adoptedStyleSheets, sheet];
+  root.adoptedStyleSheets = [...(root.adoptedStyleSheets ?? []), sheet]; /* which jsdom lacks, as matchMedia */
   const all = selector => [...place.querySelectorAll(selector)], move = (parts, y) => {
     for (const part of parts) part.setAttribute("transform", `translate(0 ${y.toFixed(1)})`);
   };
@@ -318,7 +318,7 @@ export function createFace(place) {
     ["[data-move=jaw]", "[data-part=brow]", "[data-part=cheek]", "[data-part=tongue]"].map(all);
   const delay = `${-drawings * 3.7 % 11}s`; /* not all faces blink at once */
   for (const part of all(".lid, .lash, .gaze")) part.style.animationDelay = delay;
-  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  const still = globalThis.matchMedia?.("(prefers-reduced-motion: reduce)");
   let lift = 0;
   return faps => {
     const {paths, jaw} = mouthShape(faceFrame(faps)), drawn = {...paths, ...headShape(jaw)};
@@ -329,7 +329,7 @@ export function createFace(place) {
     /* Corners that rise press the cheeks to the eyes; brows follow the jaw, slowly. */
     const smile = clamp((faps[11] + faps[12]) / 500, 0, 1);
     lift += 0.12 * (clamp(jaw / 4 - 14 * smile, -12, 11) - lift);
-    move(brows, still.matches ? 0 : -lift);
+    move(brows, still?.matches ? 0 : -lift);
     move(cheeks, -26 * smile);
   };
 }
