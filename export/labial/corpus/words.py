@@ -29,6 +29,8 @@ _SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
 _NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
 _GROUPED = re.compile(r"-?\d{1,3}(?:[.,]\d{3})+")
 _TAGS = {"[": "]", "<": ">"}
+#: The bracket of a link's text, [text](address) or [text][1], which has a letter.
+_LINK = re.compile(r"\[(?=[^\[\]]*\](?:\(|\[[\d\]]))(?=(?:[^\w\[\]]|[\d_])*[^\W\d_])")
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
 #: Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks.
@@ -75,7 +77,7 @@ PLAIN = Pronunciation()
 def phonemes_of(texts: Iterable[str], how: Pronunciation = PLAIN) -> List[Spoken]:
     """What words sound like. Raises LabialError for an unknown language or phoneme, and where a program or package that
     `how` asks for is not installed."""
-    given = list(texts)
+    given = _linked(list(texts), " ")
     return read_words(given, own_words(given, how))
 
 
@@ -83,13 +85,14 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
     """The phonemes of words, in ARPABET with SIL for silence, and their milliseconds, from time 0 on. `offset`
     milliseconds are added to all times. Raises LabialError as :func:`phonemes_of`, and StreamError where a word ends
     before it begins, begins before an earlier one, or lasts more than an hour."""
-    stream = WordStream(own_words([word.text for word in words], how), offset)
+    texts = _linked([word.text for word in words], " ")
+    stream = WordStream(own_words(texts, how), offset)
     found: List[Tuple[str, int]] = []
-    for word in words:
-        if word.ends and len(word.text) == len(word.ends) <= CHARACTERS_MAX:
-            stream.push_characters(word.text, word.start, word.ends)
+    for text, word in zip(texts, words):
+        if word.ends and len(text) == len(word.ends) <= CHARACTERS_MAX:
+            stream.push_characters(text, word.start, word.ends)
         else:
-            stream.push(word.text, word.start, word.end)
+            stream.push(text, word.start, word.end)
         found += stream.take()
     stream.end()
     return found + stream.take()
@@ -98,12 +101,13 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
 def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int],
                         language: str = ENGLISH) -> List[Word]:
     """The words of characters with their times: what stands between blanks, or where :func:`_ends` or :func:`_begins`
-    says so, without [tags] and <tags>. A bracket that is not closed begins none. Each character of Chinese is a word.
+    says so, without [tags] and <tags>. A bracket that is not closed, or a link's, begins none. Each character of Chinese is a word.
     An item of several characters shares its time evenly among them. A character that ends before the one before it, as
     rounding and zero lengths make it, ends with that."""
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
     is_each = is_chinese(language)
+    characters = _linked(characters, "")
     last = {mark: max((n for n, item in enumerate(characters) if mark in item), default=-1) for mark in _TAGS.values()}
     for number, (item, begin, end) in enumerate(zip([*characters, " "], [*starts, 0], [*ends, 0])):
         for place, character in enumerate(_whole(item), 1):
@@ -137,6 +141,15 @@ def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> Lis
                 found.append((" ", begin, begin))
             found.append((character, begin, until))
             before = character
+    return found
+
+
+def _linked(items: Sequence[str], between: str) -> List[str]:
+    """Parts of a text, which are as long afterwards, with marks that are nothing for the brackets of links' texts."""
+    text, place, found = _LINK.sub("\u200b", between.join(items)), 0, []
+    for item in items:
+        found.append(text[place : place + len(item)])
+        place += len(item) + len(between)
     return found
 
 
