@@ -124,6 +124,9 @@ def test_characters_become_words() -> None:
     assert found == [Word("abc", 0, 50, (10, 30, 50)), Word("de", 70, 80, (80, 80))]
     assert words_of_characters([], [], []) == []
     assert words_of_characters(["[", "a", "]"], [0, 1, 2], [1, 2, 3]) == []
+    links = "go [by bus](a.b) [1](c) [2][3] [é][4] on"
+    timings = labial.character_timings(links, *([50 * i + n for i in range(len(links))] for n in (0, 50)))
+    assert [label for label, _ in timings if label != "SIL"] == labial.phonemes("go by bus é on")
     hearts = words_of_characters(list("a <3 [b"), list(range(7)), list(range(1, 8)))
     assert [word.text for word in hearts] == ["a", "<3", "[b"]
     long = timings_of([Word("a" * 300, 0, 900, tuple(3 * i + 3 for i in range(300)))])  # more than the library reads

@@ -29,8 +29,9 @@ _SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
 _NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
 _GROUPED = re.compile(r"-?\d{1,3}(?:[.,]\d{3})+")
 _TAGS = {"[": "]", "<": ">"}
-#: The bracket of a link's text, [text](address) or [text][1], which has a letter.
-_LINK = re.compile(r"\[(?=[^\[\]]*\](?:\(|\[[\d\]]))(?=(?:[^\w\[\]]|[\d_])*[^\W\d_])")
+#: The bracket of a link, [text](address) or [text][1], and what stands in it; a letter, which makes it a text to be read.
+_LINK = re.compile(r"\[(?=([^\[\]]*)\](?:\(|\[[0-9\]]))")
+_LETTER = re.compile("[A-Za-z\x80-\U0010ffff]")
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
 #: Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks.
@@ -101,9 +102,9 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
 def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int],
                         language: str = ENGLISH) -> List[Word]:
     """The words of characters with their times: what stands between blanks, or where :func:`_ends` or :func:`_begins`
-    says so, without [tags] and <tags>. A bracket that is not closed, or a link's, begins none. Each character of Chinese is a word.
-    An item of several characters shares its time evenly among them. A character that ends before the one before it, as
-    rounding and zero lengths make it, ends with that."""
+    says so, without [tags] and <tags>. A bracket that is not closed, or a link's, begins none. Each character of
+    Chinese is a word. An item of several characters shares its time evenly among them. A character that ends before the
+    one before it, as rounding and zero lengths make it, ends with that."""
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
     is_each = is_chinese(language)
@@ -145,8 +146,10 @@ def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> Lis
 
 
 def _linked(items: Sequence[str], between: str) -> List[str]:
-    """Parts of a text, which are as long afterwards, with marks that are nothing for the brackets of links' texts."""
-    text, place, found = _LINK.sub("\u200b", between.join(items)), 0, []
+    """Parts of a text, which are as long afterwards: the brackets of links' texts are marks that are nothing, and those
+    of other links as wide as ideographs, since the library knows what is silent behind them."""
+    text = _LINK.sub(lambda link: "\u200b" if _LETTER.search(link[1]) else "\uff3b", between.join(items))
+    place, found = 0, []
     for item in items:
         found.append(text[place : place + len(item)])
         place += len(item) + len(between)
