@@ -143,7 +143,9 @@ static unsigned simplified(uint32_t code, unsigned *pending)
 /* The code of what HTML and SSML write for a character behind an ampersand, moving behind it; or that of "&". */
 static unsigned entity(labial_words_place_t *here)
 {
-    static const char entities[] = "amp;&\0lt;\2\0gt;\2\0quot;\"\0apos;'\0nbsp; \0#39;'\0";
+    static const char entities[] =
+        "amp;&\0lt;\2\0gt;\2\0quot;\"\0apos;'\0nbsp; \0#39;'\0rsquo;'\0mdash;\2\0ldquo;\2\0rdquo;\2\0"
+        "hellip;\2\0";
     const char *name;
     for (name = entities; *name != '\0'; name = labial_words_listed(name, 1)) {
         unsigned i;

@@ -9,7 +9,7 @@
 
 const char labial_words_dates[] = "january\0february\0march\0april\0may\0june\0july\0august\0september\0october\0"
                                   "november\0december\0monday\0tuesday\0wednesday\0thursday\0friday\0saturday\0"
-                                  "sunday\0number\0numbers\0circa\0page\0chapter\0opus\0established\0";
+                                  "sunday\0number\0numbers\0circa\0page\0chapter\0opus\0established\0rupees\0";
 
 /* A year of up to four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099. */
 static void say_year(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
@@ -195,8 +195,11 @@ static int read_time(labial_words_reading_t *reading)
     }
     reading->context->after = AFTER_TIME;
     labial_words_say_small(reading, hours.value, CARDINAL, character);
+    reading->here = next;
     if (minutes.value > 0u || seconds.value > 0u) {
         say_minutes(reading, minutes.value, minutes_at);
+    } else if (labial_words_read_range(reading)) {
+        return 1;
     } else {
         first = reading->word->count;
         labial_words_say(reading, hours.value >= 1u && hours.value <= 12u ? "o'clock" : "hundred", SAID_PLAIN,
@@ -205,7 +208,6 @@ static int read_time(labial_words_reading_t *reading)
     }
     if (seconds.value > 0u)
         say_minutes(reading, seconds.value, seconds_at);
-    reading->here = next;
     (void)labial_words_read_range(reading);
     return 1;
 }

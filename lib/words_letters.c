@@ -18,7 +18,7 @@ static const char plural_names[] = "haitches\0sesses\0xexes\0";
  * read letter by letter, + if it is what is numbered, so that a letter that stands at its number is no unit, or * if the
  * number of a telephone follows. */
 static const char *const meanings[] = {
-    ("approx\0approximately\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
+    ("approx\0approximately\0appt\0appointment\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
      "airbnb\0air bee en bee\0abc\0-\0ai\0-\0apartment\0+\0apt\0+\0"),
     "blvd\0boulevard\0btw\0-\0bouquet\0boo kay\0ballet\0bal lay\0bus\0+\0",
     "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0call\0*\0chapter\0+\0",
@@ -36,7 +36,7 @@ static const char *const meanings[] = {
     "ok\0-\0omg\0-\0openai\0open ay eye\0",
     ("prof\0professor\0ph\0-\0phd\0-\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0"
      "platform\0+\0part\0+\0"),
-    "",
+    "qty\0quantity\0",
     "rd\0road\0row\0+\0room\0+\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0seat\0+\0seats\0+\0suite\0+\0section\0+\0",
     "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0track\0+\0terminal\0+\0",
@@ -545,7 +545,7 @@ static int read_short(labial_words_reading_t *reading, const run_t *run)
     int found;
     if (reading->here.code != '.' || reading->is_address)
         return 0;
-    found = run->is_title || run->is_small ? find_run(run, "no\0nos\0ca\0p\0ch\0op\0est\0", 1) : -1;
+    found = run->is_title || run->is_small ? find_run(run, "no\0nos\0ca\0p\0ch\0op\0est\0rs\0", 1) : -1;
     if (found >= 0) {
         reading->context->after = AFTER_NO;
         reading->context->currency = (uint8_t)(DATES + found);

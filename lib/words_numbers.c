@@ -321,6 +321,8 @@ static int read_group(labial_words_reading_t *reading, unsigned after)
     return 1;
 }
 
+static void read_amounts(labial_words_reading_t *reading, unsigned character);
+
 void labial_words_read_number(labial_words_reading_t *reading)
 {
     labial_words_context_t *context = reading->context;
@@ -334,6 +336,10 @@ void labial_words_read_number(labial_words_reading_t *reading)
     }
     context->after = AFTER_NUMBER;
     context->tail = context->named = 0;
+    if (is_start && after == AFTER_MONEY) {
+        read_amounts(reading, labial_words_here(reading));
+        return;
+    }
     if (after != AFTER_UNIT)
         context->currency = 0;
     if (is_start && (after == AFTER_CALL || after == AFTER_PHONE) && read_group(reading, after))
@@ -465,15 +471,20 @@ static int read_amount(labial_words_reading_t *reading, unsigned character, int 
     return is_lower;
 }
 
-void labial_words_read_sum(labial_words_reading_t *reading)
+static void read_amounts(labial_words_reading_t *reading, unsigned character)
 {
-    unsigned character = labial_words_here(reading);
     int is_upper = 0;
-    reading->context->named = 0;
-    reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
-    labial_words_advance(&reading->here);
     while (read_amount(reading, character, is_upper)) {
         is_upper = 1;
         character = labial_words_here(reading);
     }
+}
+
+void labial_words_read_sum(labial_words_reading_t *reading)
+{
+    const unsigned character = labial_words_here(reading);
+    reading->context->named = 0;
+    reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
+    labial_words_advance(&reading->here);
+    read_amounts(reading, character);
 }

@@ -65,7 +65,8 @@ enum {
     AFTER_DRIVE,
     AFTER_AVENUE,
     AFTER_LANE,
-    AFTER_CALL, /* "call", and digits of a telephone */
+    AFTER_MONEY, /* a sign of money before its sum */
+    AFTER_CALL,  /* "call", and digits of a telephone */
     AFTER_PHONE,
     AFTER_NO,   /* "No.", "Nos.", "ca.", of which a number makes other words */
     AFTER_DATE, /* "Mon", "Jan", of which a number or a date makes a day or month; it and the next outlast , - / */

@@ -384,6 +384,9 @@ static void say_sign(labial_words_reading_t *reading, unsigned after)
     } else if (currency >= 0 && is_counted) {
         labial_words_say_name(reading, labial_words_currency_name((unsigned)currency), after == AFTER_NUMBER,
                               here->characters - 1u);
+    } else if (currency >= 0 && labial_words_is_blank(follows)) {
+        reading->context->after = AFTER_MONEY;
+        reading->context->currency = (uint8_t)currency;
     } else if (number) {
         labial_words_say_here(reading, number);
     } else if (code == '#' && labial_words_is_latin(here->before) && !labial_words_is_inside(follows)) {

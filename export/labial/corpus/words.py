@@ -29,7 +29,8 @@ _SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
 _NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
 _GROUPED = re.compile(r"-?\d{1,3}(?:[.,]\d{3})+")
 _TAGS = {"[": "]", "<": ">"}
-#: The bracket of a link, [text](address) or [text][1], and what stands in it; a letter, which makes it a text to be read.
+#: The bracket of a link, [text](address) or [text][1], and what stands in it; a letter, which makes it a text that is
+#: read.
 _LINK = re.compile(r"\[(?=([^\[\]]*)\](?:\(|\[[0-9\]]))")
 _LETTER = re.compile("[A-Za-z\x80-\U0010ffff]")
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.

@@ -15,8 +15,8 @@ EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DIVIDED, CUBE = (ch
 MOST, LEAST, ABOUT, EITHER = (chr(code) for code in range(14, 18))
 
 _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "³": CUBE, "×": TIMES,
-          "−": MINUS, "÷": DIVIDED, "≤": MOST, "≥": LEAST, "≈": ABOUT, "±": EITHER, "’": "'", "‘": "'", "ʼ": "'", "`": "'", "′": "'",
-          "″": '"', "µ": "u", "μ": "u",
+          "−": MINUS, "÷": DIVIDED, "≤": MOST, "≥": LEAST, "≈": ABOUT, "±": EITHER,
+          "’": "'", "‘": "'", "ʼ": "'", "`": "'", "′": "'", "″": '"', "µ": "u", "μ": "u",
           "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-", "\u2044": "/",
           # Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer.
           **dict(zip("\u037e\u0589\u05be\u05c3\u060c\u061b\u061f\u06d4\u0964\u0965\u104a\u104b\u1362\u1363\u17d4\u17d5",
@@ -33,8 +33,8 @@ _PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
 _LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
               "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}
 #: What HTML and SSML write for a character.
-_ENTITY = re.compile("&(amp|lt|gt|quot|apos|nbsp|#39);")
-_ENTITIES = {"amp": "&", "quot": '"', "apos": "'", "#39": "'", "nbsp": BLANK}
+_ENTITY = re.compile("&(amp|lt|gt|quot|apos|rsquo|nbsp|mdash|ldquo|rdquo|hellip|#39);")
+_ENTITIES = {"amp": "&", "quot": '"', "apos": "'", "rsquo": "'", "#39": "'", "nbsp": BLANK}
 #: Fractions, which have blanks around them.
 _LIGATURES.update({sign: f" {number[0]}/{number[1]} " for sign, number in zip(
     "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())})
@@ -44,7 +44,7 @@ _ACCENTS = {0x300: "`", 0x301: "'", 0x302: "^", 0x303: "~", 0x308: ":", 0x327: "
 _ACCENTED = "`'^~:  ,`'^:`'^: ~`'^~:  `'^:'  "
 #: What accented letters sound like; ë like EH, and at the end of a word like IY.
 _SOUNDS: Dict[str, str] = {"a`": "AA", "a'": "AA", "a^": "AA", "c,": "S", "e`": "EH", "e'": "EY", "e^": "EH",
-                           "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "n~": "N Y", "o'": "OW", "o^": "OW",
+                           "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "o'": "OW", "o^": "OW",
                            "u'": "UW", "u^": "UW"}
 
 

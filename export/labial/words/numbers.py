@@ -62,7 +62,11 @@ def currency_of(sign: str) -> int:
 def read_sum(said: Said, place: int) -> int:
     """Reads a sign of money and its number; returns the place behind them."""
     said.context.currency, said.context.named = _SIGNS.index(said.simple[place]), False
-    end, is_lower = _read_amount(said, place + 1, place, False)
+    return _read_amounts(said, place + 1, place)
+
+
+def _read_amounts(said: Said, place: int, at: int) -> int:
+    end, is_lower = _read_amount(said, place, at, False)
     while is_lower:
         end, is_lower = _read_amount(said, end, end, True)
     return end
@@ -122,9 +126,12 @@ def read_number(said: Said, place: int) -> int:
     if said.context.after in ("no", "date"):
         said.correct(place)
         is_month = said.context.short.title() in MONTHS
+    is_sum = said.context.after == "money"
     if said.context.after != "unit":
         said.context.mark = ""
     said.context.after, said.context.tail, said.context.named = "number", 0, False
+    if is_sum and is_start:
+        return _read_amounts(said, place, place)
     end = _read_group(said, place, called) if called and is_start else None
     if end is not None:
         return end
@@ -278,6 +285,8 @@ def _read_time(said: Said, place: int, _: bool) -> Optional[int]:
     seconds = found[3] if found[3] and found[3] != "00" else ""
     if found[2] != "00" or seconds:
         _say_minutes(said, found[2], found.start(2))
+    elif is_range(said, found.end()):
+        return read_range(said, found.end())
     elif 1 <= hour <= 12:
         said.say_tail("o'clock", place)
     else:

@@ -29,7 +29,8 @@ _BEFORE = {"#": "number", "<": "less than", ">": "greater than", "~": "about", "
 _POWERS = {signs.SQUARE: "square ", signs.CUBE: "cubic "}
 #: Abbreviations, and words that the trees would misread, with what is said, or - if they are read letter by letter.
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
-prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
+prof professor;appt appointment;qty quantity;jr junior;sr senior;vs versus;etc etcetera
+approx approximately;dept department;govt government
 blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
 wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
 mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
@@ -53,7 +54,7 @@ _NO_NAMES = frozenset("""the my our your his her their he she it they we this th
 _DOUBTFUL = "Jan Mar Mon Sat Sun".split()
 #: Words in short with a point, of which a number makes others, and such that mean others.
 _NUMBERED = {"no": "number", "nos": "numbers", "ca": "circa", "p": "page", "ch": "chapter", "op": "opus",
-             "est": "established"}
+             "est": "established", "rs": "rupees"}
 _SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "representative", "rev": "reverend",
            "ft": "fort", "apt": "apartment", "fig": "figure"}
 #: What is numbered: a letter that stands at such a number is no unit.
@@ -222,7 +223,8 @@ class _Reader:
         follows = self.said.at(found.end())
         if len(word) > _LONGEST_VERB:
             return False
-        if (follows in (closing, BLANK)[: 1 + (closing == "]")] and word in _ALONE) or any(word == verb + end for verb in _VERBS for end in _ENDINGS):
+        is_alone = follows == closing or (closing == "]" and follows == BLANK)
+        if (is_alone and word in _ALONE) or any(word == verb + end for verb in _VERBS for end in _ENDINGS):
             return True
         return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
                 and not word.endswith("ss") and word not in _NOT_VERBS)
@@ -263,6 +265,8 @@ class _Reader:
             said.say(inflected("cent_", after == "number"), place)
         elif numbers.currency_of(here) >= 0 and is_counted:
             said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
+        elif numbers.currency_of(here) >= 0 and follows == BLANK:
+            self.context.after, self.context.currency = "money", numbers.currency_of(here)
         elif here in _BEFORE and follows.isdigit():
             said.say(_BEFORE[here], place)
         elif here == "#" and before.isascii() and before.isalpha() and not signs.is_inside(follows):
@@ -400,7 +404,7 @@ class _Reader:
             return run != date
         elif follows == "." and small in _NUMBERED and run in (small, small.title()) and not self.address and (
                 run == small or len(run) > 1):
-            self._spell_tail(run, places)
+            self._spell_tail(run, places, self._is_spelt(run, before, follows, shouting))
             context.after, context.short = "no", _NUMBERED[small]
             return True
         elif follows == "." and small in _SHORTS and run != small and not self.address:
@@ -455,16 +459,17 @@ class _Reader:
         elif is_sure or not context.after:
             self.said.say(name.lower(), place)
         else:
-            self._spell_tail(run, places)
+            self._spell_tail(run, places, False)
             context.after, context.short = "date", name.lower()
 
-    def _spell_tail(self, run: str, places: Sequence[int]) -> None:
-        """Spells a word that the next one may take back."""
+    def _spell_tail(self, run: str, places: Sequence[int], is_spelt: bool) -> None:
+        """Says a word that the next one may take back."""
         before = len(self.said.phonemes)
-        if re.search("(?i)[aeiou]", run):
-            self._spell(run, places)
+        letters = _capitals(run) or _owner(run)
+        if is_spelt:
+            self.said.say_names(letters.lower(), places, letters != run)
         else:
-            self.said.say_names(run.lower(), places, False)
+            self._spell(run, places)
         self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
 
     def _month(self, place: int, after: str) -> str:
