@@ -143,20 +143,32 @@ static unsigned simplified(uint32_t code, unsigned *pending)
 /* The code of what HTML and SSML write for a character behind an ampersand, moving behind it; or that of "&". */
 static unsigned entity(labial_words_place_t *here)
 {
-    static const char entities[] =
-        "amp;&\0lt;\2\0gt;\2\0quot;\"\0apos;'\0nbsp; \0#39;'\0rsquo;'\0mdash;\2\0ldquo;\2\0rdquo;\2\0"
-        "hellip;\2\0";
-    const char *name;
-    for (name = entities; *name != '\0'; name = labial_words_listed(name, 1)) {
-        unsigned i;
-        for (i = 0; name[i] != ';' && here->at + i < here->size && name[i] == (char)here->text[here->at + i]; i++)
-            ;
-        if (name[i] != ';' || here->at + i >= here->size || here->text[here->at + i] != ';' ||
-            here->characters + i >= LABIAL_WORDS_CHARACTERS)
+    static const struct {
+        char name[8];
+        uint8_t size, code;
+    } entities[] = { { "amp;", 4, '&' },
+                     { "lt;", 3, NO_CHARACTER },
+                     { "gt;", 3, NO_CHARACTER },
+                     { "quot;", 5, '"' },
+                     { "apos;", 5, '\'' },
+                     { "nbsp;", 5, ' ' },
+                     { "#39;", 4, '\'' },
+                     { "rsquo;", 6, '\'' },
+                     { "mdash;", 6, NO_CHARACTER },
+                     { "ldquo;", 6, NO_CHARACTER },
+                     { "rdquo;", 6, NO_CHARACTER },
+                     { "hellip;", 7, NO_CHARACTER } };
+    unsigned number, i;
+    for (number = 0; number < sizeof entities / sizeof entities[0]; number++) {
+        const unsigned size = entities[number].size;
+        for (i = 0; i < size && here->at + i < here->size; i++)
+            if (entities[number].name[i] != (char)here->text[here->at + i])
+                break;
+        if (i < size || here->characters + size > LABIAL_WORDS_CHARACTERS)
             continue;
-        here->more = i + 1u;
-        here->at += here->more;
-        return (unsigned char)name[i + 1u];
+        here->more = size;
+        here->at += size;
+        return entities[number].code;
     }
     return '&';
 }

@@ -380,12 +380,11 @@ static const char *takes_unit(labial_words_place_t *here, const char *list)
 
 /* Reads a unit behind a number, if there is one. A foot's and an hour's names tell the context which smaller units may
  * follow: "6 ft 2 in", "1h 30m". */
-static int read_unit(labial_words_reading_t *reading, unsigned after)
+int labial_words_read_unit(labial_words_reading_t *reading, unsigned after, int is_apart)
 {
     labial_words_place_t *here = &reading->here;
     labial_words_context_t *const context = reading->context;
     const unsigned larger = context->currency;
-    const int is_apart = here->before == ' ';
     const unsigned character = here->characters - 1u;
     const char *name = takes_unit(here, units);
     context->after = AFTER_UNIT;
@@ -678,7 +677,7 @@ void labial_words_read_letters(labial_words_reading_t *reading)
         return;
     }
     if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER || after == AFTER_PHONE) &&
-        read_unit(reading, after))
+        labial_words_read_unit(reading, after, reading->here.before == ' '))
         return;
     take_run(&reading->here, &run);
     reading->has_letters = 1;

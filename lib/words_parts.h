@@ -158,6 +158,9 @@ const char *labial_words_said_of(const char *list, unsigned sign);
 int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step);
 int labial_words_is_listed(const char *letters, unsigned count, const char *list);
 
+/* Reads a unit behind a number, if there is one; whether there is. `is_apart` is for a blank between them. */
+int labial_words_read_unit(labial_words_reading_t *reading, unsigned after, int is_apart);
+
 /* Reads letters from the current one on. */
 void labial_words_read_letters(labial_words_reading_t *reading);
 

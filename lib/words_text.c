@@ -398,6 +398,18 @@ static void say_sign(labial_words_reading_t *reading, unsigned after)
     }
 }
 
+/* Reads the hyphen and the unit of "a 5-km run"; whether there are any. */
+static int reads_unit(labial_words_reading_t *reading)
+{
+    const labial_words_place_t first = reading->here;
+    labial_words_advance(&reading->here);
+    if (labial_words_is_latin(reading->here.code) && labial_words_is_latin(labial_words_following(&reading->here)) &&
+        labial_words_read_unit(reading, AFTER_ONE, 1))
+        return 1;
+    reading->here = first;
+    return 0;
+}
+
 /* Reads what is no letter and no digit. */
 static void read_sign(labial_words_reading_t *reading)
 {
@@ -420,6 +432,8 @@ static void read_sign(labial_words_reading_t *reading)
         reading->context->after = (uint8_t)after;
     if (code != '-')
         reading->has_letters = 0;
+    else if ((after == AFTER_ONE || after == AFTER_NUMBER) && reads_unit(reading))
+        return;
     if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
         reading->context->after = AFTER_NUMBER;
         labial_words_read_fraction(reading);

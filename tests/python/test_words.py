@@ -365,7 +365,7 @@ PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 
     Mon-Sat Tue Monday 9-5 no. Nos. ca. Gen. Rep. IV XVI XX chapter ⅓ 2⅔ ⅝lb ℃ m³ x³ –5 H₂O don`t 10%-20%
     1920s-1930s N/A BYE façade 1-800-FLOWERS 1-80-A 1-A (crying) *grinning* 3rds 1/4 www.gate-x.org/Sat/5
     [Click here](a.b) ](a [1] ][2] [ ] ( ) " 24" ″ hahaha hehe p. ch. Op. est. in. call dial us +44 0800 7946 (800)
-    9-1-1 1-1/2 - x ~ ^ > ≥ ≤ ≈ ± &amp; &#39; &quot; &lt; &nbsp; & ; Rs. $ € &mdash; 7:00-9:00 .NET
+    9-1-1 1-1/2 -min -km - x ~ ^ > ≥ ≤ ≈ ± &amp; &#39; &quot; &lt; &nbsp; & ; Rs. $ € &mdash; 7:00-9:00 .NET
     2024-03-05T T09:30:00Z 10:00:00""".split()
 
 

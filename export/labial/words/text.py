@@ -247,6 +247,10 @@ class _Reader:
         self.context.tail, self.context.named = 0, False
         if after in ("call", "phone") and here in "(+):":
             self.context.after = after
+        if here == "-" and after in ("one", "number") and re.match("[A-Za-z]{2}", self.simple[place + 1 :]):
+            end = self._read_unit(place + 1, "one", True)
+            if end:
+                return end
         said.letters &= here == "-"
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
