@@ -161,9 +161,11 @@ static unsigned entity(labial_words_place_t *here)
     unsigned number, i;
     for (number = 0; number < sizeof entities / sizeof entities[0]; number++) {
         const unsigned size = entities[number].size;
-        for (i = 0; i < size && here->at + i < here->size; i++)
-            if (entities[number].name[i] != (char)here->text[here->at + i])
+        for (i = 0; i < size; i++) {
+            const size_t next = here->at + i;
+            if (next >= here->size || entities[number].name[i] != (char)here->text[next])
                 break;
+        }
         if (i < size || here->characters + size > LABIAL_WORDS_CHARACTERS)
             continue;
         here->more = size;

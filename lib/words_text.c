@@ -234,7 +234,8 @@ static int has_own_behind(const labial_words_place_t *here, const labial_words_o
 
 /* ---- Signs ------------------------------------------------------------------------------------------------------ */
 
-/* Whether a word in brackets or asterisks is a stage direction; the bracket is here. */
+/* Whether a word in brackets or asterisks is a stage direction; the bracket is here, behind a word in square ones there
+ * is no letter. */
 static int is_direction(const labial_words_place_t *here, unsigned closing)
 {
     labial_words_place_t next = *here;
@@ -251,8 +252,7 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
     word[count] = '\0';
     if (count == 0u || labial_words_is_inside(next.code))
         return 0;
-    if ((next.code == closing || (closing == ']' && labial_words_is_blank(next.code))) &&
-        labial_words_is_listed(word, count, alone))
+    if ((next.code == closing || closing == ']') && labial_words_is_listed(word, count, alone))
         return 1;
     for (verb = verbs; *verb != '\0'; verb = labial_words_listed(verb, 1)) {
         unsigned i;

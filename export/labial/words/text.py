@@ -223,8 +223,9 @@ class _Reader:
         follows = self.said.at(found.end())
         if len(word) > _LONGEST_VERB:
             return False
-        is_alone = follows == closing or (closing == "]" and follows == BLANK)
-        if (is_alone and word in _ALONE) or any(word == verb + end for verb in _VERBS for end in _ENDINGS):
+        if closing in (follows, "]") and word in _ALONE:
+            return True
+        if any(word == verb + end for verb in _VERBS for end in _ENDINGS):
             return True
         return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
                 and not word.endswith("ss") and word not in _NOT_VERBS)
