@@ -457,10 +457,8 @@ static int read_amount(labial_words_reading_t *reading, unsigned character, int 
             labial_words_say_digits(reading, 0);
         }
         first = reading->word->count;
-        if (scale != NO_WORD) {
+        if (scale != NO_WORD)
             labial_words_say(reading, labial_words_listed(labial_words_cardinals, scale), SAID_PLAIN, last);
-            context->after = AFTER_NOTHING;
-        }
         if (scale != NO_WORD || !is_lower)
             labial_words_say_name(reading, name, is_plural || scale != NO_WORD, last);
         if (scale == NO_WORD)

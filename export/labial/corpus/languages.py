@@ -332,8 +332,8 @@ def _syllables(part: str) -> Optional[List[str]]:
 
 
 def _kana(word: str) -> str:
-    """A word in kana, by fugashi where it has kanji; without it kanji are left out, but for what is counted. は that ends a word
-    is read as わ, and what is not kana stands apart, since espeak-ng would name the letters of "OKです"."""
+    """A word in kana, by fugashi where it has kanji; without it kanji are left out, but for what is counted. は that
+    ends a word is read as わ, and what is not kana stands apart, since espeak-ng would name the letters of "OKです"."""
     tagger = _tagger() if HAN.search(word) else None
     if tagger:
         said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))

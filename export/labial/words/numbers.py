@@ -102,7 +102,6 @@ def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, 
         read_fraction(said, end)
     if scale:
         said.say(_LETTER_SCALES[scale[1].lower()] + " " + inflected(name, True), after - 1)
-        context.after = ""
         return read_range(said, behind), is_lower
     plural = is_upper or digits != "1" or (fraction is not None and cents is None)
     if cents is None:
