@@ -120,6 +120,32 @@ static int is_closed(labial_voice_t *voice, const labial_voice_utterance_t *utte
     return 0;
 }
 
+/* Whether the square bracket at the current character is a link's, [text](address) or [text][1], and 2 if there are
+ * letters in it, which are read. */
+static unsigned is_link(labial_voice_t *voice, const labial_voice_utterance_t *utterance)
+{
+    uint32_t at = voice->plan.at;
+    unsigned i, k = voice->plan.byte + 1u, found = 1, before = 0;
+    for (i = 0; i <= LABIAL_VOICE_BACK; i++, at = labial_voice_after(voice, at), k = 0) {
+        labial_voice_look(&voice->plan, at);
+        if (at >= labial_voice_limit(utterance))
+            return 0;
+        for (; k < voice->items[at].size; k++) {
+            const unsigned code = (unsigned char)labial_voice_text(voice, at)[k];
+            if (before == '[')
+                return code == ']' || (code >= '0' && code <= '9') ? found : 0u;
+            if (before == ']' && code == '(')
+                return found;
+            if ((code == '[') != (before == ']'))
+                return 0;
+            if ((code | 0x20u) - 'a' < 26u || code >= 0x80u)
+                found = 2;
+            before = code == '[' || code == ']' ? code : 0u;
+        }
+    }
+    return 0;
+}
+
 /* Gives the word of the characters so far to the stream of words, if there is one; returns whether there was. */
 static int finish_word(labial_voice_t *voice)
 {
@@ -176,9 +202,10 @@ static int next_word(labial_voice_t *voice, const labial_voice_utterance_t *utte
             const uint32_t end = item->start + (uint32_t)((uint64_t)length * (plan->point + 1u) / count);
             const uint32_t code = labial_voice_code(character, bytes);
             const char closing = *character == '[' ? ']' : *character == '<' ? '>' : '\0';
-            if (!plan->closing && closing && is_closed(voice, utterance, closing))
+            const unsigned link = !plan->closing && closing == ']' ? is_link(voice, utterance) : 0u;
+            if (!plan->closing && closing && link == 0u && is_closed(voice, utterance, closing))
                 plan->closing = (uint8_t)closing;
-            is_read = !plan->closing && !ends_word(plan, code);
+            is_read = !plan->closing && link < 2u && !ends_word(plan, code);
             if (is_read && begins_word(plan, code)) {
                 (void)finish_word(voice);
                 return 1;

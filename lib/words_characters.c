@@ -27,6 +27,8 @@ static const struct {
                { 0xb5u, 'u', 0, 0 },          { 0xc6u, 'A', 'E', 0 },           { 0xd7u, SIGN_TIMES, 0, 0 },
                { 0xe6u, 'a', 'e', 0 },        { 0xf7u, SIGN_DIVIDED, 0, 0 },    { 0x152u, 'O', 'E', 0 },
                { 0x153u, 'o', 'e', 0 },       { 0x2bcu, '\'', 0, 0 },           { 0x3bcu, 'u', 0, 0 },
+               { 0x2032u, '\'', 0, 0 },       { 0x2033u, '"', 0, 0 },           { 0x2248u, SIGN_ABOUT, 0, 0 },
+               { 0x2264u, SIGN_MOST, 0, 0 },  { 0x2265u, SIGN_LEAST, 0, 0 },    { 0xb1u, SIGN_EITHER, 0, 0 },
                { 0x2018u, '\'', 0, 0 },       { 0x2019u, '\'', 0, 0 },          { 0x20acu, SIGN_EURO, 0, 0 },
                { 0x20b9u, SIGN_RUPEE, 0, 0 }, { 0x2103u, SIGN_DEGREE, 'C', 0 }, { 0x2109u, SIGN_DEGREE, 'F', 0 },
                { 0x2212u, SIGN_MINUS, 0, 0 }, { 0xfb00u, 'f', 'f', 0 },         { 0xfb01u, 'f', 'i', 0 },
@@ -138,6 +140,41 @@ static unsigned simplified(uint32_t code, unsigned *pending)
     return NO_CHARACTER;
 }
 
+/* The code of what HTML and SSML write for a character behind an ampersand, moving behind it; or that of "&". */
+static unsigned entity(labial_words_place_t *here)
+{
+    static const struct {
+        char name[8];
+        uint8_t size, code;
+    } entities[] = { { "amp;", 4, '&' },
+                     { "lt;", 3, NO_CHARACTER },
+                     { "gt;", 3, NO_CHARACTER },
+                     { "quot;", 5, '"' },
+                     { "apos;", 5, '\'' },
+                     { "nbsp;", 5, ' ' },
+                     { "#39;", 4, '\'' },
+                     { "rsquo;", 6, '\'' },
+                     { "mdash;", 6, NO_CHARACTER },
+                     { "ldquo;", 6, NO_CHARACTER },
+                     { "rdquo;", 6, NO_CHARACTER },
+                     { "hellip;", 7, NO_CHARACTER } };
+    unsigned number, i;
+    for (number = 0; number < sizeof entities / sizeof entities[0]; number++) {
+        const unsigned size = entities[number].size;
+        for (i = 0; i < size; i++) {
+            const size_t next = here->at + i;
+            if (next >= here->size || entities[number].name[i] != (char)here->text[next])
+                break;
+        }
+        if (i < size || here->characters + size > LABIAL_WORDS_CHARACTERS)
+            continue;
+        here->more = size;
+        here->at += size;
+        return entities[number].code;
+    }
+    return '&';
+}
+
 /* The accent of a letter, which may be a mark behind it. */
 static unsigned accent_of(const labial_words_place_t *here, uint32_t code)
 {
@@ -160,7 +197,7 @@ void labial_words_place(labial_words_place_t *here, const char *text, size_t siz
     here->text = (const unsigned char *)text;
     here->size = size;
     here->at = at;
-    here->characters = here->accent = here->pending = 0;
+    here->characters = here->accent = here->pending = here->more = 0;
     here->code = ' ';
     labial_words_advance(here);
 }
@@ -174,6 +211,8 @@ void labial_words_advance(labial_words_place_t *here)
         here->pending >>= 8;
         return;
     }
+    here->characters += here->more;
+    here->more = 0;
     do {
         here->start = here->at;
         here->code = TEXT_END;
@@ -182,7 +221,7 @@ void labial_words_advance(labial_words_place_t *here)
         code = code_point(here);
         here->characters++;
     } while (is_mark(code));
-    here->code = simplified(code, &here->pending);
+    here->code = code == '&' ? entity(here) : simplified(code, &here->pending);
     here->accent = labial_words_is_latin(here->code) ? accent_of(here, code) : 0u;
 }
 

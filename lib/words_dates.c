@@ -9,7 +9,7 @@
 
 const char labial_words_dates[] = "january\0february\0march\0april\0may\0june\0july\0august\0september\0october\0"
                                   "november\0december\0monday\0tuesday\0wednesday\0thursday\0friday\0saturday\0"
-                                  "sunday\0number\0numbers\0circa\0";
+                                  "sunday\0number\0numbers\0circa\0page\0chapter\0opus\0established\0rupees\0";
 
 /* A year of up to four digits: two by two, except 2000 to 2009 and years below 1100 or above 2099. */
 static void say_year(labial_words_reading_t *reading, unsigned value, unsigned ending, unsigned character)
@@ -29,13 +29,17 @@ static void say_year(labial_words_reading_t *reading, unsigned value, unsigned e
     labial_words_say_small(reading, rest, ending, character);
 }
 
-/* 2024-03-05, 2024/03/05, 3/5/2024, 3/5/24, 5.3.2024: month first, unless that cannot be or points are between. */
+static int read_time(labial_words_reading_t *reading);
+
+/* 2024-03-05, 2024/03/05, 3/5/2024, 3/5/24, 5.3.2024: month first, unless that cannot be or points are between. Behind
+ * the year first a time may stand, 2024-03-05T10:30. */
 static int read_date(labial_words_reading_t *reading)
 {
     labial_words_place_t next = reading->here;
     const unsigned character = labial_words_here(reading);
     labial_words_number_t parts[3];
     unsigned sign = 0, i, year, month, day;
+    int is_timed;
     for (i = 0; i < 3u; i++) {
         if (i > 0u) {
             if (next.code != (i == 1u ? next.code : sign) || (next.code != '/' && next.code != '-' && next.code != '.'))
@@ -47,7 +51,8 @@ static int read_date(labial_words_reading_t *reading)
         if (parts[i].count == 0u || parts[i].count > 4u)
             return 0;
     }
-    if (labial_words_is_inside(next.code) || parts[1].count > 2u)
+    is_timed = parts[0].count == 4u && next.code == 'T' && labial_words_is_decimal(labial_words_following(&next));
+    if ((labial_words_is_inside(next.code) && !is_timed) || parts[1].count > 2u)
         return 0;
     if (parts[0].count == 4u && sign != '.' && parts[2].count <= 2u) {
         year = parts[0].value;
@@ -69,8 +74,12 @@ static int read_date(labial_words_reading_t *reading)
     labial_words_say(reading, labial_words_listed(labial_words_dates, month - 1u), SAID_PLAIN, character);
     labial_words_say_small(reading, day, ORDINAL, character);
     say_year(reading, year, CARDINAL, character);
+    if (is_timed)
+        labial_words_advance(&next);
     reading->here = next;
     reading->context->after = AFTER_NOTHING;
+    if (is_timed)
+        (void)read_time(reading);
     return 1;
 }
 
@@ -121,7 +130,9 @@ static unsigned phone_groups(const labial_words_place_t *here)
         next = *here;
     }
     groups = take_groups(&next, "-\0");
-    if (groups.largest <= 4u && groups.smallest >= 2u && !labial_words_is_inside(next.code) &&
+    if (groups.largest <= 4u &&
+        (groups.smallest >= 2u || (groups.largest == 1u && groups.count > 2u && next.code != '-')) &&
+        !labial_words_is_inside(next.code) &&
         (next.code == '-'
              ? groups.count > 1u && groups.first == 1u && labial_words_is_capital(labial_words_following(&next))
              : groups.count > 2u || groups.sizes == 0x34u ||
@@ -146,7 +157,7 @@ static int read_phone(labial_words_reading_t *reading)
         labial_words_say_digits(reading, 0);
     }
     if (count > 0u)
-        reading->context->after = AFTER_NOTHING;
+        reading->context->after = count == 1u ? AFTER_PHONE : AFTER_NOTHING;
     return count > 0u;
 }
 
@@ -172,7 +183,7 @@ static int read_time(labial_words_reading_t *reading)
     minutes_at = next.characters - 1u;
     minutes = labial_words_take_digits(&next);
     seconds_at = minutes_at;
-    seconds.count = 0;
+    seconds.value = 0;
     if (minutes.count != 2u || hours.value > 24u || minutes.value > 59u)
         return 0;
     if (next.code == ':') {
@@ -184,17 +195,19 @@ static int read_time(labial_words_reading_t *reading)
     }
     reading->context->after = AFTER_TIME;
     labial_words_say_small(reading, hours.value, CARDINAL, character);
-    if (minutes.value > 0u || seconds.count > 0u) {
+    reading->here = next;
+    if (minutes.value > 0u || seconds.value > 0u) {
         say_minutes(reading, minutes.value, minutes_at);
+    } else if (labial_words_read_range(reading)) {
+        return 1;
     } else {
         first = reading->word->count;
         labial_words_say(reading, hours.value >= 1u && hours.value <= 12u ? "o'clock" : "hundred", SAID_PLAIN,
                          character);
         labial_words_keep_tail(reading, first);
     }
-    if (seconds.count > 0u)
+    if (seconds.value > 0u)
         say_minutes(reading, seconds.value, seconds_at);
-    reading->here = next;
     (void)labial_words_read_range(reading);
     return 1;
 }
@@ -207,7 +220,7 @@ static int is_denominator(unsigned value)
 }
 
 /* 3/4, 2/3; "and" before it behind a number. */
-static int read_share(labial_words_reading_t *reading, int is_counted)
+int labial_words_read_share(labial_words_reading_t *reading, int is_counted)
 {
     labial_words_place_t next = reading->here;
     const unsigned character = labial_words_here(reading);
@@ -249,6 +262,8 @@ static int read_feet(labial_words_reading_t *reading)
     inches = labial_words_take_digits(&next);
     if (inches.count == 0u || inches.count > 2u || labial_words_is_inside(next.code))
         return 0;
+    if (next.code == '"')
+        labial_words_advance(&next);
     labial_words_say_small(reading, feet.value, CARDINAL, character);
     labial_words_say(reading, "foot", SAID_PLAIN, character);
     labial_words_say_small(reading, inches.value, CARDINAL, character);
@@ -316,6 +331,6 @@ static int read_year(labial_words_reading_t *reading)
 int labial_words_read_special(labial_words_reading_t *reading, unsigned after)
 {
     return read_date(reading) || read_phone(reading) || read_time(reading) ||
-           read_share(reading, after == AFTER_ONE || after == AFTER_NUMBER) || read_feet(reading) ||
+           labial_words_read_share(reading, after == AFTER_ONE || after == AFTER_NUMBER) || read_feet(reading) ||
            read_decade(reading) || (after == AFTER_MONTH && read_day(reading)) || read_year(reading);
 }

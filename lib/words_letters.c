@@ -15,28 +15,28 @@ static const char letter_names[] = "ay\0bee\0see\0dee\0e\0eff\0jee\0aitch\0eye\0
 static const char plural_names[] = "haitches\0sesses\0xexes\0";
 
 /* Abbreviations, and words that the trees would misread, by their first letter; each with what is said, - if it is
- * read letter by letter, or + if it is what is numbered, so that a letter that stands at its number is no unit. */
+ * read letter by letter, + if it is what is numbered, so that a letter that stands at its number is no unit, or * if the
+ * number of a telephone follows. */
 static const char *const meanings[] = {
-    ("approx\0approximately\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
+    ("approx\0approximately\0appt\0appointment\0ascii\0askey\0android\0an droid\0anime\0annie may\0"
      "airbnb\0air bee en bee\0abc\0-\0ai\0-\0apartment\0+\0apt\0+\0"),
     "blvd\0boulevard\0btw\0-\0bouquet\0boo kay\0ballet\0bal lay\0bus\0+\0",
-    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0chapter\0+\0",
-    "dr\0doctor\0dept\0department\0debris\0deh bree\0diy\0-\0",
+    "capt\0captain\0cmos\0sea moss\0cliche\0klee shay\0ctrl\0control\0cpu\0-\0ceo\0-\0cfo\0-\0call\0*\0chapter\0+\0",
+    "dr\0doctor\0dept\0department\0debris\0deh bree\0diy\0-\0dial\0*\0",
     "etc\0etcetera\0edu\0ee dee you\0eww\0ee you\0ext\0extension\0eu\0-\0exit\0+\0",
     "fi\0fie\0facade\0fah sod\0ftp\0-\0fyi\0-\0faq\0-\0flat\0+\0fig\0+\0figure\0+\0",
     "govt\0government\0gnu\0new\0gmail\0jee mail\0gee\0jee\0gpu\0-\0gate\0+\0gates\0+\0",
-    ("http\0-\0https\0-\0hwy\0highway\0hvac\0aitch vack\0hipaa\0hippa\0haha\0hah hah\0hahaha\0hah hah hah\0"
-     "hehe\0hee hee\0hdmi\0-\0hbo\0-\0hall\0+\0"),
-    "idk\0-\0id\0-\0",
+    ("http\0-\0https\0-\0hwy\0highway\0hvac\0aitch vack\0hipaa\0hippa\0hdmi\0-\0hbo\0-\0hall\0+\0"),
+    "idk\0-\0id\0-\0imo\0-\0",
     "jr\0junior\0jpeg\0jay peg\0jpg\0jay peg\0json\0jason\0",
     "kubernetes\0cooper netties\0karate\0cah rah tee\0",
-    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0latte\0lah tay\0locker\0+\0",
+    "ltd\0limited\0lt\0lieutenant\0lemme\0lemmy\0lmao\0-\0latte\0lah tay\0locker\0+\0",
     "mr\0mister\0mrs\0missiz\0ms\0mizz\0mt\0mount\0mpeg\0em peg\0mysql\0my sequel\0",
     "nato\0nay toe\0nvidia\0en vidia\0nginx\0engine ex\0nba\0-\0",
     "ok\0-\0omg\0-\0openai\0open ay eye\0",
     ("prof\0professor\0ph\0-\0phd\0-\0pp\0pages\0pls\0please\0plz\0please\0pilates\0pee lah teez\0"
      "platform\0+\0part\0+\0"),
-    "",
+    "qty\0quantity\0",
     "rd\0road\0row\0+\0room\0+\0",
     "st\0saint\0sr\0senior\0sgt\0sergeant\0seat\0+\0seats\0+\0suite\0+\0section\0+\0",
     "tbh\0-\0thx\0thanks\0tba\0-\0ttyl\0-\0track\0+\0terminal\0+\0",
@@ -82,7 +82,8 @@ static const char units[] =
     "Gbps\0gigabit_ per second\0W\0watt_\0kW\0kilowatt_\0MW\0megawatt_\0GW\0gigawatt_\0Wh\0watt hour_\0"
     "kWh\0kilowatt hour_\0V\0volt_\0mV\0millivolt_\0kV\0kilovolt_\0mA\0milliamp_\0mAh\0milliamp hour_\0dB\0decibel_\0"
     "px\0pixel_\0cal\0calorie_\0kcal\0kilocalorie_\0rpm\0are pee em\0bpm\0bee pee em\0fps\0eff pee ess\0"
-    "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0yr\0year_\0yrs\0year_\0tbsp\0tablespoon_\0"
+    "mpg\0mile_ per gallon\0EUR\0euro_\0GBP\0pound_\0USD\0you ess dollar_\0CAD\0canadian dollar_\0"
+    "AUD\0australian dollar_\0CHF\0swiss franc_\0JPY\0yen\0INR\0rupee_\0yr\0year_\0yrs\0year_\0tbsp\0tablespoon_\0"
     "tsp\0teaspoon_\0";
 
 /* What a letter stands before that it begins with; as a list of units. */
@@ -379,17 +380,23 @@ static const char *takes_unit(labial_words_place_t *here, const char *list)
 
 /* Reads a unit behind a number, if there is one. A foot's and an hour's names tell the context which smaller units may
  * follow: "6 ft 2 in", "1h 30m". */
-static int read_unit(labial_words_reading_t *reading, unsigned after)
+int labial_words_read_unit(labial_words_reading_t *reading, unsigned after, int is_apart)
 {
     labial_words_place_t *here = &reading->here;
     labial_words_context_t *const context = reading->context;
     const unsigned larger = context->currency;
-    const int is_apart = here->before == ' ';
     const unsigned character = here->characters - 1u;
     const char *name = takes_unit(here, units);
     context->after = AFTER_UNIT;
-    if (!name && (!is_apart || larger == 'f'))
-        name = takes_unit(here, attached_units);
+    if (!name) {
+        labial_words_place_t next = *here;
+        name = takes_unit(&next, attached_units);
+        if (is_apart && larger != 'f' &&
+            (next.code != '.' || name != attached_units + sizeof "M\0million\0bn\0billion\0in"))
+            name = NULL; /* after a blank, "in." alone is one */
+        if (name)
+            *here = next;
+    }
     if (!name) {
         context->after = AFTER_NOTHING;
         return 0;
@@ -405,7 +412,7 @@ static int read_unit(labial_words_reading_t *reading, unsigned after)
         labial_words_say(reading, here->code == SIGN_CUBE ? "cubic" : "square", SAID_PLAIN, character);
         labial_words_advance(here);
     }
-    labial_words_say_name(reading, name, after == AFTER_NUMBER, character);
+    labial_words_say_name(reading, name, after == AFTER_NUMBER || after == AFTER_PHONE, character);
     if (context->currency == 'f' && here->code == '.')
         labial_words_advance(here);
     else
@@ -530,14 +537,14 @@ static int read_date_name(labial_words_reading_t *reading, const run_t *run, uns
     return 1;
 }
 
-/* Reads a word in short with a point behind it; returns whether it was said. Of "No.", "Nos." and "ca." a number makes
- * other words. */
+/* Reads a word in short with a point behind it; returns whether it was said. Of "No." and others a number makes other
+ * words. */
 static int read_short(labial_words_reading_t *reading, const run_t *run)
 {
     int found;
     if (reading->here.code != '.' || reading->is_address)
         return 0;
-    found = run->is_title || run->is_small ? find_run(run, "no\0nos\0ca\0", 1) : -1;
+    found = run->is_title || run->is_small ? find_run(run, "no\0nos\0ca\0p\0ch\0op\0est\0rs\0", 1) : -1;
     if (found >= 0) {
         reading->context->after = AFTER_NO;
         reading->context->currency = (uint8_t)(DATES + found);
@@ -550,6 +557,21 @@ static int read_short(labial_words_reading_t *reading, const run_t *run)
     if (found >= SHORT_PLACES)
         reading->context->after = AFTER_PLACE;
     labial_words_advance(&reading->here);
+    return 1;
+}
+
+/* Reads laughter, two syllables or more: "haha", "hehehe". */
+static int read_laugh(labial_words_reading_t *reading, const run_t *run)
+{
+    const char *const syllable = labial_words_said_of("ahah\0ehee\0ihee\0ohoe\0", run->letters[1].letter + 'a' - 1u);
+    unsigned i;
+    if (run->count < 4u || !syllable)
+        return 0;
+    for (i = 0; i < run->count; i++)
+        if (run->letters[i].letter != (i % 2u == 0u ? 8u : run->letters[1].letter))
+            return 0;
+    for (i = 0; i + 1u < run->count; i += 2u)
+        labial_words_say(reading, syllable, SAID_PLAIN, run->letters[i].character);
     return 1;
 }
 
@@ -584,6 +606,13 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     }
     if (read_date_name(reading, run, after) || read_short(reading, run))
         return 1;
+    if (run->count == 1u && run->small != 0u && run->capitals[0] == 'X' && run->before == ' ' &&
+        labial_words_is_blank(follows) && (after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_UNIT)) {
+        labial_words_say(reading, "by", SAID_PLAIN, character);
+        return 1;
+    }
+    if (read_laugh(reading, run))
+        return 1;
     if (run->count == 1u && run->small != 0u && follows == '/' && run->capitals[0] == 'W') {
         labial_words_say(reading, "with", SAID_PLAIN, character);
         reading->context->after = AFTER_WITH;
@@ -598,8 +627,8 @@ static int read_rule(labial_words_reading_t *reading, const run_t *run, unsigned
     found = run->before == ';' || run->before == '&' ? -1 : find_run(run, list, 2);
     if (found >= 0) {
         list = labial_words_listed(list, 2u * (unsigned)found + 1u);
-        if (*list == '+') {
-            reading->context->after = AFTER_PLACE;
+        if (*list == '+' || *list == '*') {
+            reading->context->after = *list == '+' ? AFTER_PLACE : AFTER_CALL;
             return 0;
         }
         if (*list == '-')
@@ -637,6 +666,7 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     labial_words_place_t next;
     const unsigned after = labial_words_forget(reading), shouting = context->shouting, named = context->named;
     unsigned number, first;
+    int is_read;
     run_t run;
     context->named = 0;
     pass_stutter(&reading->here);
@@ -646,7 +676,8 @@ void labial_words_read_letters(labial_words_reading_t *reading)
         read_pointed(reading, after);
         return;
     }
-    if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER) && read_unit(reading, after))
+    if ((after == AFTER_ONE || after == AFTER_NUMBER || after == AFTER_PER || after == AFTER_PHONE) &&
+        labial_words_read_unit(reading, after, reading->here.before == ' '))
         return;
     take_run(&reading->here, &run);
     reading->has_letters = 1;
@@ -659,6 +690,8 @@ void labial_words_read_letters(labial_words_reading_t *reading)
     context->shouting = 0;
     if (after == AFTER_PLACE && (run.count == 1u || find_run(&run, "and\0or\0to\0", 1) >= 0))
         context->after = AFTER_PLACE;
+    if (after == AFTER_CALL && find_run(&run, "us\0me\0at\0on\0now\0", 1) >= 0)
+        context->after = AFTER_CALL;
     number = roman(&run, named != 0u || after == AFTER_PLACE);
     if (number != 0u) {
         labial_words_say_small(reading, number, CARDINAL, run.letters[0].character);
@@ -666,10 +699,12 @@ void labial_words_read_letters(labial_words_reading_t *reading)
             labial_words_append(reading->word, PHONEME_Z, run.letters[owner_length(&run) - 1u].character, 0);
         return;
     }
-    if ((named && read_street(reading, &run)) || read_rule(reading, &run, after, shouting))
+    if (named && read_street(reading, &run))
         return;
-    labial_words_spell(reading->model, run.letters, run.count, reading->word);
+    is_read = read_rule(reading, &run, after, shouting);
+    if (!is_read)
+        labial_words_spell(reading->model, run.letters, run.count, reading->word);
     if (context->after == AFTER_DATE || context->after == AFTER_NO)
         labial_words_keep_tail(reading, first);
-    context->shouting = run.small == 0u && (run.count > 1u || run.capitals[0] == 'I');
+    context->shouting = !is_read && run.small == 0u && (run.count > 1u || run.capitals[0] == 'I');
 }

@@ -245,11 +245,18 @@ static unsigned take_ending(labial_words_reading_t *reading, const labial_words_
     return PLURALS;
 }
 
-/* What may follow a number: another one up to which it reaches or by which it is multiplied. */
+/* What may follow a number: a fraction, another one up to which it reaches or by which it is multiplied. */
 static void read_behind(labial_words_reading_t *reading)
 {
     labial_words_place_t *here = &reading->here;
+    const labial_words_place_t first = *here;
     const unsigned code = here->code;
+    if (code == '-') {
+        labial_words_advance(here);
+        if (labial_words_read_share(reading, 1))
+            return;
+        *here = first;
+    }
     if ((code == 'x' || code == SIGN_TIMES) && labial_words_is_decimal(labial_words_following(here))) {
         labial_words_say(reading, "by", SAID_PLAIN, labial_words_here(reading));
         labial_words_advance(here);
@@ -267,6 +274,8 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
     if (is_coded(&number)) {
         *here = first;
         labial_words_say_digits(reading, 1);
+        if (is_start && number.count > 2u)
+            reading->context->after = AFTER_PHONE;
     } else {
         const unsigned ending = take_ending(reading, &number);
         say_number(reading, &number, ending, first.characters - 1u);
@@ -287,9 +296,32 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
         reading->context->after = AFTER_NUMBER;
         reading->context->tail = 0;
     }
+    if (first.before == '+' && first.characters == 2u && number.count < 4u)
+        reading->context->after = AFTER_PHONE;
     if (is_start)
         read_behind(reading);
 }
+
+/* Reads digits of the number of a telephone behind a "call" or other digits of it: one by one, from three on. */
+static int read_group(labial_words_reading_t *reading, unsigned after)
+{
+    labial_words_place_t next = reading->here;
+    const labial_words_number_t number = labial_words_take_digits(&next);
+    const unsigned code = next.code, is_short = number.count < 3u;
+    if (labial_words_is_inside(code) || code == '%' || code == '\'' || code == '/' || code == ':' || code == '-' ||
+        ((code == '.' || code == ',') && labial_words_is_decimal(labial_words_following(&next))))
+        return 0;
+    if (is_short || (after == AFTER_CALL && number.value % 100u == 0u && !is_coded(&number))) {
+        say_number(reading, &number, CARDINAL, labial_words_here(reading));
+        reading->here = next;
+    } else {
+        labial_words_say_digits(reading, 0);
+    }
+    reading->context->after = (uint8_t)(is_short ? after : (unsigned)AFTER_PHONE);
+    return 1;
+}
+
+static void read_amounts(labial_words_reading_t *reading, unsigned character);
 
 void labial_words_read_number(labial_words_reading_t *reading)
 {
@@ -304,8 +336,14 @@ void labial_words_read_number(labial_words_reading_t *reading)
     }
     context->after = AFTER_NUMBER;
     context->tail = context->named = 0;
+    if (is_start && after == AFTER_MONEY) {
+        read_amounts(reading, labial_words_here(reading));
+        return;
+    }
     if (after != AFTER_UNIT)
         context->currency = 0;
+    if (is_start && (after == AFTER_CALL || after == AFTER_PHONE) && read_group(reading, after))
+        return;
     if (is_start && labial_words_read_special(reading, after))
         return;
     read_plain(reading, is_start);
@@ -419,10 +457,8 @@ static int read_amount(labial_words_reading_t *reading, unsigned character, int 
             labial_words_say_digits(reading, 0);
         }
         first = reading->word->count;
-        if (scale != NO_WORD) {
+        if (scale != NO_WORD)
             labial_words_say(reading, labial_words_listed(labial_words_cardinals, scale), SAID_PLAIN, last);
-            context->after = AFTER_NOTHING;
-        }
         if (scale != NO_WORD || !is_lower)
             labial_words_say_name(reading, name, is_plural || scale != NO_WORD, last);
         if (scale == NO_WORD)
@@ -433,15 +469,20 @@ static int read_amount(labial_words_reading_t *reading, unsigned character, int 
     return is_lower;
 }
 
-void labial_words_read_sum(labial_words_reading_t *reading)
+static void read_amounts(labial_words_reading_t *reading, unsigned character)
 {
-    unsigned character = labial_words_here(reading);
     int is_upper = 0;
-    reading->context->named = 0;
-    reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
-    labial_words_advance(&reading->here);
     while (read_amount(reading, character, is_upper)) {
         is_upper = 1;
         character = labial_words_here(reading);
     }
+}
+
+void labial_words_read_sum(labial_words_reading_t *reading)
+{
+    const unsigned character = labial_words_here(reading);
+    reading->context->named = 0;
+    reading->context->currency = (uint8_t)((unsigned)labial_words_currency(reading->here.code) & 7u);
+    labial_words_advance(&reading->here);
+    read_amounts(reading, character);
 }

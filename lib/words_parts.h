@@ -43,7 +43,11 @@ enum {
     SIGN_TIMES,
     SIGN_MINUS,
     SIGN_DIVIDED,
-    SIGN_CUBE
+    SIGN_CUBE,
+    SIGN_MOST,
+    SIGN_LEAST,
+    SIGN_ABOUT,
+    SIGN_EITHER
 };
 
 /* What was said last, in `after` of labial_words_context_t. */
@@ -61,6 +65,9 @@ enum {
     AFTER_DRIVE,
     AFTER_AVENUE,
     AFTER_LANE,
+    AFTER_MONEY, /* a sign of money before its sum */
+    AFTER_CALL,  /* "call", and digits of a telephone */
+    AFTER_PHONE,
     AFTER_NO,   /* "No.", "Nos.", "ca.", of which a number makes other words */
     AFTER_DATE, /* "Mon", "Jan", of which a number or a date makes a day or month; it and the next outlast , - / */
     AFTER_DAY,  /* the name of a day */
@@ -78,6 +85,7 @@ typedef struct {
     unsigned before;     /* of the one before, a blank at the beginning */
     unsigned accent;     /* of the current one, 0 for none */
     unsigned pending;    /* further characters of a ligature or a fraction, the next one in the low byte */
+    unsigned more;       /* characters of the text, beside the current one, that it stands for: of "&amp;" */
 } labial_words_place_t;
 
 /* A place in a text, and the word that it becomes. */
@@ -150,6 +158,9 @@ const char *labial_words_said_of(const char *list, unsigned sign);
 int labial_words_find(const char *letters, unsigned count, const char *list, unsigned step);
 int labial_words_is_listed(const char *letters, unsigned count, const char *list);
 
+/* Reads a unit behind a number, if there is one; whether there is. `is_apart` is for a blank between them. */
+int labial_words_read_unit(labial_words_reading_t *reading, unsigned after, int is_apart);
+
 /* Reads letters from the current one on. */
 void labial_words_read_letters(labial_words_reading_t *reading);
 
@@ -196,10 +207,13 @@ void labial_words_say_last(labial_words_reading_t *reading, unsigned last, unsig
 /* Reads "to" behind a number, its unit or time of day where another number follows; whether it does. */
 int labial_words_read_range(labial_words_reading_t *reading);
 
+/* Reads a fraction such as 3/4, with "and" before it behind a number; whether there is one. */
+int labial_words_read_share(labial_words_reading_t *reading, int is_counted);
+
 /* Reads dates, times and whatever is more than a number, `after` what was said before; whether there is any. */
 int labial_words_read_special(labial_words_reading_t *reading, unsigned after);
 
-/* Names of months, and behind them those of days; then what "No.", "Nos." and "ca." mean. */
+/* Names of months, and behind them those of days; then what "No." and others mean before a number. */
 enum { MONTHS = 12, MONDAY = 12, DATES = 19 };
 extern const char labial_words_dates[];
 

@@ -17,9 +17,11 @@
 #define LONGEST_SAID 18u
 
 /* Signs that are said; a blank separates spoken words. The last ones are SIGN_SQUARE, SIGN_TIMES, SIGN_MINUS,
- * SIGN_DIVIDED and SIGN_CUBE. */
+ * SIGN_DIVIDED, SIGN_CUBE, SIGN_MOST, SIGN_LEAST, SIGN_ABOUT and SIGN_EITHER. Before a number others are said, too. */
 static const char signs[] = "&and\0@at\0%percent\0+plus\0=equals\0\11squared\0\12times\0\13minus\0\14divided by\0"
-                            "\15cubed\0";
+                            "\15cubed\0\16less than or equal to\0\17greater than or equal to\0\20about\0"
+                            "\21plus or minus\0";
+static const char before_number[] = "#number\0<less than\0>greater than\0~about\0^to the power of\0";
 
 /* Signs that are said within an address. */
 static const char joints[] = "/slash\0-dash\0_underscore\0:colon\0";
@@ -232,7 +234,8 @@ static int has_own_behind(const labial_words_place_t *here, const labial_words_o
 
 /* ---- Signs ------------------------------------------------------------------------------------------------------ */
 
-/* Whether a word in brackets or asterisks is a stage direction; the bracket is here. */
+/* Whether a word in brackets or asterisks is a stage direction; the bracket is here, behind a word in square ones there
+ * is no letter. */
 static int is_direction(const labial_words_place_t *here, unsigned closing)
 {
     labial_words_place_t next = *here;
@@ -249,7 +252,7 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
     word[count] = '\0';
     if (count == 0u || labial_words_is_inside(next.code))
         return 0;
-    if (next.code == closing && labial_words_is_listed(word, count, alone))
+    if ((next.code == closing || closing == ']') && labial_words_is_listed(word, count, alone))
         return 1;
     for (verb = verbs; *verb != '\0'; verb = labial_words_listed(verb, 1)) {
         unsigned i;
@@ -262,12 +265,42 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
            word[count - 1u] == 'S' && word[count - 2u] != 'S' && !labial_words_is_listed(word, count, not_verbs);
 }
 
-/* The character that ends the tag or stage direction that begins here; 0 if none does. */
+/* Whether what a square bracket begins is silent: all but the text of a link, behind which an address or the number of
+ * one stands. Of a bracket with several words whose end is not in sight a capital and small letters tell that it is no
+ * stage direction. */
+static int is_tag(const labial_words_place_t *here)
+{
+    labial_words_place_t next = *here, word;
+    int has_letters = 0;
+    labial_words_advance(&next);
+    word = next;
+    if (labial_words_is_blank(next.code))
+        return 0;
+    for (; next.code != ']' && next.code != TEXT_END; labial_words_advance(&next)) {
+        if (next.code == '[')
+            return 0;
+        has_letters |= labial_words_is_inside(next.code) && !labial_words_is_decimal(next.code);
+    }
+    labial_words_advance(&next);
+    if (next.code == '(' || (next.code == '[' && (labial_words_following(&next) == ']' ||
+                                                  labial_words_is_decimal(labial_words_following(&next)))))
+        return !has_letters;
+    if (!labial_words_is_capital(word.code))
+        return 1;
+    do
+        labial_words_advance(&word);
+    while (word.code >= 'a' && word.code <= 'z');
+    return !labial_words_is_blank(word.code) || is_direction(here, ']');
+}
+
+/* The character that ends the tag or stage direction that begins here, or the address of a link; 0 if none does. */
 static unsigned tag_closing(const labial_words_place_t *here)
 {
     const unsigned code = here->code, follows = labial_words_following(here);
     if (code == '[')
-        return labial_words_is_blank(follows) ? 0u : ']';
+        return is_tag(here) ? ']' : 0u;
+    if (code == ']')
+        return follows == '(' ? ')' : 0u;
     if (code == '<')
         return labial_words_is_latin(follows) || follows == '/' || follows == '!' || follows == '?' ? '>' : 0u;
     if ((code == '(' || code == '*') && here->before != '*' && is_direction(here, code == '(' ? ')' : '*'))
@@ -302,8 +335,8 @@ static void read_joint(labial_words_reading_t *reading)
     labial_words_advance(&next);
     third = next;
     labial_words_advance(&third);
-    if (here->code == '.' && next.code >= 'a' && next.code <= 'z' &&
-        (labial_words_is_inside(before) || before == ' ')) {
+    if (here->code == '.' && (before == ' ' ? labial_words_is_latin(next.code)
+                                            : labial_words_is_inside(before) && next.code >= 'a' && next.code <= 'z')) {
         labial_words_say_here(reading, "dot");
         reading->is_address = 1;
     } else if (here->code == ':' && labial_words_is_inside(before) && next.code == '/' && third.code == '/') {
@@ -318,12 +351,26 @@ static void read_joint(labial_words_reading_t *reading)
     }
 }
 
+/* Reads the sign of a quotation, which means inches behind a number where none has begun. */
+static void read_quotation(labial_words_reading_t *reading)
+{
+    labial_words_context_t *const context = reading->context;
+    const labial_words_place_t *const here = &reading->here;
+    const int begins = !labial_words_is_blank(labial_words_following(here)) && !labial_words_is_inside(here->before);
+    if (labial_words_is_decimal(here->before) && context->quoted == 0u) {
+        labial_words_say_here(reading, "inch");
+        context->after = AFTER_UNIT;
+    }
+    context->quoted = (uint8_t)begins;
+}
+
 /* Says a sign as it is read behind what came `after`; stays on it, or on its last character. */
 static void say_sign(labial_words_reading_t *reading, unsigned after)
 {
     labial_words_place_t *here = &reading->here;
     const unsigned code = here->code, follows = labial_words_following(here);
     const char *const said = labial_words_said_of(signs, code);
+    const char *const number = labial_words_is_decimal(follows) ? labial_words_said_of(before_number, code) : NULL;
     const int currency = labial_words_currency(code), is_counted = after == AFTER_ONE || after == AFTER_NUMBER;
     if (code == SIGN_DEGREE) {
         read_degrees(reading, after);
@@ -337,15 +384,30 @@ static void say_sign(labial_words_reading_t *reading, unsigned after)
     } else if (currency >= 0 && is_counted) {
         labial_words_say_name(reading, labial_words_currency_name((unsigned)currency), after == AFTER_NUMBER,
                               here->characters - 1u);
-    } else if (code == '#' && labial_words_is_decimal(follows)) {
-        labial_words_say_here(reading, "number");
+    } else if (currency >= 0 && labial_words_is_blank(follows)) {
+        reading->context->after = AFTER_MONEY;
+        reading->context->currency = (uint8_t)currency;
+    } else if (number) {
+        labial_words_say_here(reading, number);
     } else if (code == '#' && labial_words_is_latin(here->before) && !labial_words_is_inside(follows)) {
         labial_words_say_here(reading, "sharp");
-    } else if (code == '<' && labial_words_is_decimal(follows)) {
-        labial_words_say_here(reading, "less than");
+    } else if (code == '"') {
+        read_quotation(reading);
     } else if (said) {
         labial_words_say_here(reading, said);
     }
+}
+
+/* Reads the hyphen and the unit of "a 5-km run"; whether there are any. */
+static int reads_unit(labial_words_reading_t *reading)
+{
+    const labial_words_place_t first = reading->here;
+    labial_words_advance(&reading->here);
+    if (labial_words_is_latin(reading->here.code) && labial_words_is_latin(labial_words_following(&reading->here)) &&
+        labial_words_read_unit(reading, AFTER_ONE, 1))
+        return 1;
+    reading->here = first;
+    return 0;
 }
 
 /* Reads what is no letter and no digit. */
@@ -366,8 +428,12 @@ static void read_sign(labial_words_reading_t *reading)
     }
     after = labial_words_forget(reading);
     reading->context->tail = reading->context->named = 0;
+    if ((after == AFTER_CALL || after == AFTER_PHONE) && (code == '(' || code == '+' || code == ')' || code == ':'))
+        reading->context->after = (uint8_t)after;
     if (code != '-')
         reading->has_letters = 0;
+    else if ((after == AFTER_ONE || after == AFTER_NUMBER) && reads_unit(reading))
+        return;
     if (labial_words_has_fraction(here) && !labial_words_is_inside(here->before)) {
         reading->context->after = AFTER_NUMBER;
         labial_words_read_fraction(reading);
@@ -399,7 +465,7 @@ static void read_next(labial_words_reading_t *reading, const labial_words_own_t 
         if (here->code == ' ')
             end_word(reading);
         else if (here->code == context->closing)
-            context->closing = 0;
+            context->closing = here->code == ']' && labial_words_following(here) == '(' ? ')' : 0;
         labial_words_advance(here);
     } else if (!labial_words_is_inside(here->before) && reads_own(reading, own)) {
         (void)labial_words_forget(reading);

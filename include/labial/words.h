@@ -133,6 +133,7 @@ typedef struct {
     uint8_t named;    /* the word before may be the name of a street */
     uint8_t closing;  /* what ends the tag or stage direction that the text is in */
     uint8_t left;     /* words that it may still have */
+    uint8_t quoted;   /* a quotation has begun */
 } labial_words_context_t;
 
 /* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */

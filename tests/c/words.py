@@ -109,9 +109,28 @@ PHRASES = [*"""
            "42nd St.", "42nd St. Louis", "In St. Louis", "St. x", "Elm  St.", "Elm ST", "A St.", "Elm. St.", "Elm-St",
            "Elm 5 St", "Elm St. The", "Elm St., Foo", "Elm St Dr Foo", "Elm St. $5", "Elm $5 St", "Elm St. a Foo",
            "Elm. Dr x", "iPhone St.", "Ave St. x Dr", "tv html mp3 css dvds abc tv's x.php",
-           "hm grrr shhh xxx bzz ll'd", "Tv Html nfl's usb's id ids", "xbox y'all x's Latte openai's", "abcdef ghjklm"]
-LONG = ["111111111" * 30, "a" * 40 + "b", "ab" * 15 + "o" * 40 + "kk", "ab" * 150,
-        "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
+           "hm grrr shhh xxx bzz ll'd", "Tv Html nfl's usb's id ids", "xbox y'all x's Latte openai's", "abcdef ghjklm",
+           "[Click here](https://a.b/c) x", "[click](a b) c", "[1](a) b", "[a][1] b", "[a][b] c", "[a][] b", "[](a) b",
+           "[![a](b)](c) d", "[a [b] c", "[Your Name] a", "[Sighs deeply] a", "[Music plays] a", "[I am", "[Click",
+           "[a", "[Abc5 d", "[ABC d", "[\u4e2d](a) b", "[laughs](softly) a", "a](b) c", "a] (b)", "[5 a](b)", "[Music",
+           '24" 5\'11" 5\'11"x', '"24" 6"', '"I am 24" a 6" b', '"', 'a" 6"', '6"x', '6" 6 x 4 5 x', "5 x 4", "5x 4",
+           "5 X 4", "5 km x 4", "1 x 4", "a x 4", "5 x", "5 in. 5 in 5in. 5 A. 5 km.", "p. 5", "p. a", "P. 5", "ch. 5",
+           "Op. 5", "est. 1990", "p.5", "hahahaha Hehe hoho hihi hahah hahe huhu hah haaha hahahahahahahahahaha",
+           "a&amp;b it&#39;s &quot;a&quot; &lt;a&gt; a&nbsp;b &amp &ampx; &am &a; &", "~5 ~a ^5 ^a >5 >a",
+           "\u22645 \u2265a \u22485 \xb15 5\u203211\u2033", "1-1/2 1-1/x 1-a",
+           "1-2-3 1-2-3-4 1-2-3-a 1-2 1-2-3-45 9-1-1 1-2-3-A",
+           "2024-03-05T09:30:00Z 2024-03-05T5 2024-03-05Tx 2024-03-05X 3/5/2024T5 10:30:00 10:00:00 10:00:05",
+           "call 555 123 4567", "call 911 24 7", "call us at 5 800 555 x", "Call: (555) 123 4567", "dial +44 20 555",
+           "call 500 a", "call 0500 a", "call 0100000000", "call 555-1234", "call 5.5", "call 555, 555", "call 555,5",
+           "call 12:30", "call 50%", "call 5/6", "call 5'6",
+           "call 5x", "call 5-6", "[A{b c", "call 1234567890123456", "call me 5 km", "call a 555", "&call 555",
+           "+44 555 66", "+4444 555", "a+44 555", "+44.5 555", "0800 555", "08 555", "a0800 555", "(800) 555 66 km",
+           "5-km 12-oz. 5-in. 2-in-1 5-m 5-x 40-min 5-xx 5-12 5-", "$1M/yr", "$5M million", "$ 5", "R$ 20 million",
+           "€ 20-30 x", "$ x 5", "$ x5", "5 $ 5", "£", "Rs. 500", "Rs 500", "7:00-9:00 PM",
+           "15:00-16:00", "7:00-x", "7:00:05-9", "a&mdash;b &rsquo;&hellip;", "appt. qty",
+           "a.b .NET .Net .a ..A", "I call. 555", "call) 555"]
+LONG = ["111111111" * 30, "." * 250 + "&amp;a", "." * 251 + "&amp;", "a" * 40 + "b",
+        "ab" * 15 + "o" * 40 + "kk", "ab" * 150, "€" * 300 + "a", "WWWWW-WWWWW-WWWWW-WWWWW", "\u0301" * 260]
 TIMED = """the a I computer banana strengths idea go tv's reiteration 21 we're asthma B&B hmm spaghetti queue onion boy
  Mississippi extraordinary rhythm""".split()
 

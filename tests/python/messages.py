@@ -19,7 +19,8 @@ from websockets.sync.server import ServerConnection, serve
 #: What stands in texts.
 PIECES = ["Maybe", "people", "hum.", "2024", "$5.50", "1,234", "[laughs]", "<b>", "</b>", "[", "]", "Zürich", "it's",
           "Kokoro!", "HTTP", "U.S.", "naïve", "日本語", "👍", "—", "-", "…", "iPhone", "", "x\u0000y", "\ud800",
-          "\U0010ffff", "e.g.", "twenty-one", "don’t", "a" * 300, "\u00a0", "\u0085", "a\u3000b", "ﬁ", "ß",
+          "\U0010ffff", "e.g.", "twenty-one", "don’t", "a" * 300, "\u00a0", "\u0085", "a\u3000b", "ﬁ", "ß", "[Click",
+          "here](a.b/c)", "[1](x)", "[a][2]",
           "妈妈爸爸，朋友,我用Python。", "今日はパンを食べました！", "すごーいバナナ・マンゴー", "แม่และพ่อ", "o" * 130]
 #: The services, as `labial timings --from` calls them.
 NAMES = ("words", "azure", "cartesia", "kokoro-fastapi", "fish", "minimax", "polly", "google", "elevenlabs", "soniox",

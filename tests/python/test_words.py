@@ -349,7 +349,7 @@ if CMUDICT:
 
 #: What rules tell apart: characters, and parts of words.
 ALPHABET = ("abeigxyzAEIXYZTVUSmrstndhkKMBGCF0123456789012345..,,''-–--/:://&%@+=[]<>()**_  $€£¥₹¢°²½¼¾×÷−#\" "
-            "éñÆßœŁ’Жﬁëïç中😀\u0301\u0308\u200b\u00a0Ａµ⅓¾³₂℃‘`‑")
+            "éñÆßœŁ’Жﬁëïç中😀\u0301\u0308\u200b\u00a0Ａµ⅓¾³₂℃‘`‑~^;≥″")
 PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 3/5/2024 3/5/24 5.3.2024 1/2 3/4 5/12
     555-1234 1-800-555-0199 10-20 5'10 22nd $5 $1 $5.50 $0.99 $.50 $1.5 €20 ¥5.50 ₹1,000 5€ 50¢ $2M $10k $5/hour
     1,234,567 1,00 999,999,999,999,999 1234567890123456 million billion a.m. p.m. am PM o'clock km kg m s h GB km/h
@@ -363,7 +363,10 @@ PARTS = """1999 2005 1990s 80s 5 1 12 0 007 3:30 9:00 15:00 10:30:15 2024-03-05 
     MP3 4K ’s Mr. Dr St. approx. Wi-Fi jpeg 50% ... ! ? . , ; :
     Satu seat gates Apt. fig. and or 14C 5M SW1A F-16s 747s 120s St Ave ln Main Elm then Jan Mar. Mon Mon, Sat. Sun
     Mon-Sat Tue Monday 9-5 no. Nos. ca. Gen. Rep. IV XVI XX chapter ⅓ 2⅔ ⅝lb ℃ m³ x³ –5 H₂O don`t 10%-20%
-    1920s-1930s N/A BYE façade 1-800-FLOWERS 1-80-A 1-A (crying) *grinning* 3rds 1/4 www.gate-x.org/Sat/5""".split()
+    1920s-1930s N/A BYE façade 1-800-FLOWERS 1-80-A 1-A (crying) *grinning* 3rds 1/4 www.gate-x.org/Sat/5
+    [Click here](a.b) ](a [1] ][2] [ ] ( ) " 24" ″ hahaha hehe p. ch. Op. est. in. call dial us +44 0800 7946 (800)
+    9-1-1 1-1/2 -min -km - x ~ ^ > ≥ ≤ ≈ ± &amp; &#39; &quot; &lt; &nbsp; & ; Rs. $ € &mdash; 7:00-9:00 .NET
+    2024-03-05T T09:30:00Z 10:00:00""".split()
 
 
 @needs_runtime

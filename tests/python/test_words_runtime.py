@@ -124,6 +124,9 @@ def test_characters_become_words() -> None:
     assert found == [Word("abc", 0, 50, (10, 30, 50)), Word("de", 70, 80, (80, 80))]
     assert words_of_characters([], [], []) == []
     assert words_of_characters(["[", "a", "]"], [0, 1, 2], [1, 2, 3]) == []
+    links = "go [by bus](a.b) [1](c) [2][3] [é][4] on"
+    timings = labial.character_timings(links, *([50 * i + n for i in range(len(links))] for n in (0, 50)))
+    assert [label for label, _ in timings if label != "SIL"] == labial.phonemes("go by bus é on")
     hearts = words_of_characters(list("a <3 [b"), list(range(7)), list(range(1, 8)))
     assert [word.text for word in hearts] == ["a", "<3", "[b"]
     long = timings_of([Word("a" * 300, 0, 900, tuple(3 * i + 3 for i in range(300)))])  # more than the library reads
@@ -267,8 +270,16 @@ def test_signs_are_said_in_the_language(caplog: pytest.LogCaptureFixture) -> Non
             ("ru", "500 ₽", "500 рублей"), ("hi", "₹500", "500 रुपये"), ("hi", "500 ₹", "500 रुपये"),
             ("cmn", "20%", "百分之二十"), ("cmn", "$5", "五美元"), ("cmn", "20℃", "二十摄氏度"),
             ("ja", "¥500", "500 えん"), ("ko", "5 €", "5 유로"),
-            ("ko", "5€입니다", "5 유로 입니다"), ("ko", "25°C입니다", "25 도 입니다"), ("ja", "25℃です", "25 ど です")):
+            ("ko", "5€입니다", "5 유로 입니다"), ("ko", "25°C입니다", "25 도 입니다"), ("ja", "25℃です", "25 ど です"),
+            ("de", "3.10.2024", "3 10 2024"), ("fr", "14h30", "14 heures 30"), ("pt-br", "14h", "14 horas"),
+            ("de", "14h", "14 h"), ("pt-br", "R$ 5", "reais 5"), ("fr", "1 000 amis", "1000 amis"),
+            ("de", "10\u202f000 Amis", "10000 Amis"), ("pl", "(2 000 500,5)", "2000000 500,5"),
+            ("es", "612 345 678", "612, 345, 678"), ("fr", "5 123 45", "5, 123, 45"),
+            ("fr", "[1 000 amis](a.b)", "1000 amis")):
         assert labial.phonemes(text, language=language) == labial.phonemes(same, language=language), (language, text)
+    thousand = [Word("2", 0, 300, (300,)), Word("000", 300, 600, (400, 500, 600))]
+    spoken = timings_of(thousand, pronunciation(language="fr"))
+    assert [label for label, _ in spoken] == labial.phonemes("2000", language="fr")
     assert labial.phonemes("20%", language="hi")[-7:] == "P AH T IH SH AH T".split()
     assert labial.phonemes("5 $", language="de") == "F UW N F D AO L AA".split()
     assert labial.phonemes("％", language="ja") == "P AE S EH N T OW".split()
@@ -327,6 +338,7 @@ def test_kanji_become_kana(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCa
     assert labial.phonemes("私は話します", language="ja") == "W AE T AE SH IY W AE HH AE N AE SH IY M AE S".split()
     monkeypatch.setattr(languages, "_tagger", lambda: None)
     assert labial.phonemes("話します", language="ja") == "SH IY M AE S".split()
+    assert labial.phonemes("3時に10万円世界", language="ja") == labial.phonemes("3じ に10まん えん", language="ja")
     assert labial.phonemes("世界", language="ja") == []
     assert "kanji need fugashi: pip install '.[japanese]'" in caplog.text
 

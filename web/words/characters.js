@@ -30,6 +30,23 @@ export function split(text) {
     return text.split(BLANKS).filter(Boolean);
 }
 
+/** The bracket of a link, [text](address) or [text][1], and what stands in it; a letter, which makes it a text to be
+ * read. */
+const LINK = /\[(?=([^[\]]*)\](?:\(|\[[0-9\]]))/gu;
+const LETTER = /[A-Za-z\x80-\u{10ffff}]/u;
+
+/** Parts of a text, which are as long afterwards: the brackets of links' texts are marks that are nothing, and those of
+ * other links as wide as ideographs, since the library knows what is silent behind them. */
+export function linked(items, between = "") {
+    const text = items.join(between).replace(LINK, (_, inside) => (LETTER.test(inside) ? "\u200b" : "\uff3b"));
+    let place = -between.length;
+    return items.map((item) => {
+        const from = place + between.length;
+        place = from + item.length;
+        return text.slice(from, place);
+    });
+}
+
 /** The words of a text, as wordsOfCharacters() finds them, but with its tags. */
 export function wordsOf(text) {
     const words = [[]];
@@ -76,9 +93,11 @@ export function even(value) {
 }
 
 /** The words { text, start, end, ends } of characters with their times, whole milliseconds: what stands between blanks,
- * or where ends() or begins() says so, without [tags] and <tags>. A bracket that is not closed begins none. An item of
- * several characters shares its time evenly among them; a character that ends before the one before it ends with that. */
-export function wordsOfCharacters(items, starts, finishes) {
+ * or where ends() or begins() says so, without [tags] and <tags>. A bracket that is not closed, or a link's, begins none.
+ * An item of several characters shares its time evenly among them; a character that ends before the one before it ends
+ * with that. */
+export function wordsOfCharacters(given, starts, finishes) {
+    const items = linked(given);
     const words = [];
     let word = [];
     let start = 0;

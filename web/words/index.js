@@ -1,6 +1,6 @@
 // Words and written characters with their times to phonemes: what labial.words() loads. docs/browser.md is the manual;
 // labial's index.d.ts has the calls.
-import { wordsOf, wordsOfCharacters } from "./characters.js";
+import { linked, wordsOf, wordsOfCharacters } from "./characters.js";
 import english from "./english.js";
 import { Lexicon } from "./lexicon.js";
 import { MessageReader, readTimings } from "./readers.js";
@@ -45,7 +45,7 @@ class Words {
     phonemes(text, { own, numbers } = {}) {
         const lexicon = this.#lexicon;
         if (typeof text !== "string") throw new TypeError(`the text is ${lexicon.tools.shown(text)}, not text`);
-        const texts = wordsOf(text);
+        const texts = linked(wordsOf(text), " ");
         const table = lexicon.table(lexicon.known(own, numbers, texts));
         try {
             return lexicon.read(texts, table);

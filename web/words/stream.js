@@ -1,5 +1,7 @@
 // Words in time on their way to phonemes.
 
+import { linked } from "./characters.js";
+
 /** LABIAL_WORDS_NO_END, and LABIAL_WORDS_CHARACTERS: what the library reads of a word at most. */
 const NO_END = 2 ** 32 - 1;
 const CHARACTERS_MAX = 255;
@@ -147,10 +149,11 @@ export function inMilliseconds(lexicon, word, place) {
 
 /** The segments of words in milliseconds, one after the other. */
 export function segmentsOf(lexicon, words, { own, numbers, offset }) {
-    const known = lexicon.known(own, numbers, words.map(({ text }) => text));
+    const texts = linked(words.map(({ text }) => text), " ");
+    const known = lexicon.known(own, numbers, texts);
     const line = new Line(lexicon, { own: known, offset });
     try {
-        for (const word of words) line.add(word);
+        words.forEach((word, i) => line.add({ ...word, text: texts[i] }));
         line.end();
         return line.take();
     } finally {

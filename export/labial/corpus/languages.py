@@ -332,15 +332,21 @@ def _syllables(part: str) -> Optional[List[str]]:
 
 
 def _kana(word: str) -> str:
-    """A word in kana, by fugashi where it has kanji; without it kanji are left out. は that ends a word is read as わ,
-    and what is not kana stands apart, since espeak-ng would name the letters of "OKです"."""
+    """A word in kana, by fugashi where it has kanji; without it kanji are left out, but for what is counted. は that
+    ends a word is read as わ, and what is not kana stands apart, since espeak-ng would name the letters of "OKです"."""
     tagger = _tagger() if HAN.search(word) else None
     if tagger:
         said = (item.feature.pron or item.feature.kana or HAN.sub("", item.surface) for item in tagger(word))
         word = "".join(said).replace("ワタクシ", "ワタシ")  # which dictionaries have for "I", and few say
-    return _JOINT.sub(" ", _TOPIC.sub("わ", HAN.sub("", word)))
+    word = _COUNTED.sub(lambda found: _COUNTERS.get(found[0], "") + " ", word)
+    return _JOINT.sub(" ", _TOPIC.sub("わ", HAN.sub("", word))).strip()
 
 
+#: What stands behind a number, as it is said.
+_COUNTERS = dict(zip(
+    "円年月日時分秒人個回度歳万億千百",
+    "えん ねん がつ にち じ ふん びょう にん こ かい ど さい まん おく せん ひゃく".split()))
+_COUNTED = re.compile(rf"(?<=\d){HAN.pattern}|(?<=\d[万億千百])円")
 #: Where letters of the Latin alphabet and kana meet; and the particle of a topic, which is not the end of "haha".
 _JOINT = re.compile("(?<=[A-Za-z])(?=[\u3041-\u30ff])|(?<=[\u3041-\u30ff])(?=[A-Za-z])")
 _TOPIC = re.compile("(?<![はあ])は$")

@@ -14,7 +14,7 @@ _WRITTEN = str.maketrans({**{chr(code + 0xFEE0): chr(code) for code in range(0x2
 #: sums with what is written behind them, as Korean has it; any other sign alone. A hyphen is a minus before a number,
 #: at the beginning of a word.
 _BEFORE = rf"(?:(?<![^\s(])[-−][{_CURRENCIES}]?|[{_CURRENCIES}＄￥￡#№§])"
-PATTERN = (rf"(?<![^\W_])(?:{_BEFORE}\d+(?:[.,]\d+)*[%％]?|\d+(?:[.,]\d+)*[%％])(?![^\W_])|"
+PATTERN = (rf"R\$|(?<![^\W_])(?:{_BEFORE}\d+(?:[.,]\d+)*[%％]?|\d+(?:[.,]\d+)*[%％])(?![^\W_])|"
            rf"[°€£¥₹₽￥￡℃℉][^\W\d_]*|[%‰&+=@§№$％＆＋＝＠＄]")
 #: A number with such signs.
 NUMBER = re.compile(rf"[-−]?[{_CURRENCIES}＄￥￡#№§]?\d[\d.,]*[%％]?")
@@ -31,6 +31,7 @@ _SAID: Dict[str, Dict[str, str]] = {
               "@ アット - マイナス",
         "ko": "% 퍼센트 °C 도 ° 도 € 유로 £ 파운드 $ 달러 ¥ 엔 & 앤드 + 플러스 = 는 - 마이너스",
         "pl": "€ euro - minus",
+        "pt": "R$ reais",
         "ru": "€ евро £ фунтов ¥ иен ₹ рупий ₽ рублей °C градусов_цельсия ° градусов § параграф & и "
               "- минус",
         "yue": _CHINESE,
@@ -38,9 +39,19 @@ _SAID: Dict[str, Dict[str, str]] = {
 }
 
 
+#: The hour, in languages that write times such as 14h30; and a date whose points are not said.
+_HOURS, _TIME = {"es": "horas", "fr": "heures", "pt": "horas"}, re.compile(r"(\d\d?)h(\d\d)?")
+_DATE = re.compile(r"(\d\d?)\.(\d\d?)\.(\d{2,4})")
+
+
 def worded(text: str, language: str) -> str:
     """A text with its signs as `language`, "cmn" for any Chinese but "yue", says them; signs that espeak-ng says itself
     stay, and currencies stand behind their number."""
+    time, date = _TIME.fullmatch(text), _DATE.fullmatch(text)
+    if time and language.partition("-")[0] in _HOURS:
+        return f"{time[1]} {_HOURS[language.partition('-')[0]]} {time[2] or ''}".strip()
+    if date:
+        return " ".join(date.groups())
     text = re.sub(rf"^(-?)([{_CURRENCIES}])(\d.*)", r"\1\3 \2", text.translate(_WRITTEN))
     if language in ("cmn", "yue"):
         text = re.sub(r"(\d[\d.,]*)%", r"百分之\1", text)

@@ -27,8 +27,16 @@ LATEST = (1 << 32) - 2
 _STRETCH = re.compile(r"[^\W_]+(?:['’\-.,][^\W_]+)*")
 _SIGNED = re.compile(f"{signs.PATTERN}|{_STRETCH.pattern}")
 _NUMBER = re.compile(r"-?\d+(?:,\d{3})*(?:\.\d+)?")
+#: A number with blanks between its groups, each of these, and what is the number of a telephone rather.
+_GROUPS = re.compile(r"(?<![\w.,])[1-9]\d{0,2}(?:[ \xa0\u2009\u202f]\d{3}){1,4}(?![ \xa0\u2009\u202f]?\d)")
+_GROUP = re.compile(r"\d+")
+_TELEPHONE = re.compile(r"\d{3}(?:\W\d{3}){2,}(?<!000)")
 _GROUPED = re.compile(r"-?\d{1,3}(?:[.,]\d{3})+")
 _TAGS = {"[": "]", "<": ">"}
+#: The bracket of a link, [text](address) or [text][1], and what stands in it; a letter, which makes it a text that is
+#: read.
+_LINK = re.compile(r"\[(?=([^\[\]]*)\](?:\(|\[[0-9\]]))")
+_LETTER = re.compile("[A-Za-z\x80-\U0010ffff]")
 #: LABIAL_VOICE_LETTERS, characters of a word at most; and how many it has where another one of kana begins the next.
 _LETTERS, _KANA_MOST = 60, 4
 #: Where a word ends besides blanks: punctuation of Chinese and Japanese, and marks behind a script without blanks.
@@ -75,7 +83,7 @@ PLAIN = Pronunciation()
 def phonemes_of(texts: Iterable[str], how: Pronunciation = PLAIN) -> List[Spoken]:
     """What words sound like. Raises LabialError for an unknown language or phoneme, and where a program or package that
     `how` asks for is not installed."""
-    given = list(texts)
+    given = _written(list(texts), how.language)
     return read_words(given, own_words(given, how))
 
 
@@ -83,13 +91,14 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
     """The phonemes of words, in ARPABET with SIL for silence, and their milliseconds, from time 0 on. `offset`
     milliseconds are added to all times. Raises LabialError as :func:`phonemes_of`, and StreamError where a word ends
     before it begins, begins before an earlier one, or lasts more than an hour."""
-    stream = WordStream(own_words([word.text for word in words], how), offset)
+    texts = _written([word.text for word in words], how.language)
+    stream = WordStream(own_words(texts, how), offset)
     found: List[Tuple[str, int]] = []
-    for word in words:
-        if word.ends and len(word.text) == len(word.ends) <= CHARACTERS_MAX:
-            stream.push_characters(word.text, word.start, word.ends)
+    for text, word in zip(texts, words):
+        if word.ends and len(text) == len(word.ends) <= CHARACTERS_MAX:
+            stream.push_characters(text, word.start, word.ends)
         else:
-            stream.push(word.text, word.start, word.end)
+            stream.push(text, word.start, word.end)
         found += stream.take()
     stream.end()
     return found + stream.take()
@@ -98,12 +107,13 @@ def timings_of(words: Sequence[Word], how: Pronunciation = PLAIN, offset: int = 
 def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: Sequence[int],
                         language: str = ENGLISH) -> List[Word]:
     """The words of characters with their times: what stands between blanks, or where :func:`_ends` or :func:`_begins`
-    says so, without [tags] and <tags>. A bracket that is not closed begins none. Each character of Chinese is a word.
-    An item of several characters shares its time evenly among them. A character that ends before the one before it, as
-    rounding and zero lengths make it, ends with that."""
+    says so, without [tags] and <tags>. A bracket that is not closed, or a link's, begins none. Each character of
+    Chinese is a word. An item of several characters shares its time evenly among them. A character that ends before the
+    one before it, as rounding and zero lengths make it, ends with that."""
     words: List[Word] = []
     text, start, times, closing = "", 0, [0], ""
     is_each = is_chinese(language)
+    characters = _linked(characters, "")
     last = {mark: max((n for n, item in enumerate(characters) if mark in item), default=-1) for mark in _TAGS.values()}
     for number, (item, begin, end) in enumerate(zip([*characters, " "], [*starts, 0], [*ends, 0])):
         for place, character in enumerate(_whole(item), 1):
@@ -138,6 +148,39 @@ def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> Lis
             found.append((character, begin, until))
             before = character
     return found
+
+
+def _linked(items: Sequence[str], between: str) -> List[str]:
+    """Parts of a text, which are as long afterwards: the brackets of links' texts are marks that are nothing, and those
+    of other links as wide as ideographs, since the library knows what is silent behind them."""
+    text = _LINK.sub(lambda link: "\u200b" if _LETTER.search(link[1]) else "\uff3b", between.join(items))
+    return _cut(text, items, len(between))
+
+
+def _cut(characters: Sequence[str], items: Sequence[str], gap: int) -> List[str]:
+    """What has become of the characters of items, between which a gap is."""
+    place, found = 0, []
+    for item in items:
+        found.append("".join(characters[place : place + len(item)]))
+        place += len(item) + gap
+    return found
+
+
+def _written(words: Sequence[str], language: str) -> List[str]:
+    """Words without the brackets of links; in other languages than English a group of a number such as 12 500 is what
+    it stands for, 12000 500, so that espeak-ng says no zeros."""
+    found = _linked(words, " ")
+    if language == ENGLISH:
+        return found
+    text = " ".join(found)
+    parts = list(text)
+    for number in _GROUPS.finditer(text):
+        if not _TELEPHONE.fullmatch(number[0]):
+            for group in _GROUP.finditer(text, number.start(), number.end()):
+                zeros = "0" * (3 * ((number.end() - group.end()) // 4))
+                kept = str(int(group[0])) + zeros if int(group[0]) else ""
+                parts[group.start() : group.end()] = [kept, *[""] * (len(group[0]) - 1)]
+    return _cut(parts, found, 1)
 
 
 def words_of(text: str) -> List[str]:

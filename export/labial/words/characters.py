@@ -7,13 +7,16 @@ it sounds has that sound as well.
 
 from __future__ import annotations
 
+import re
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
 FOREIGN, NOTHING, BLANK = "\1", "\2", " "
 EURO, POUND, YEN, RUPEE, CENT, DEGREE, SQUARE, TIMES, MINUS, DIVIDED, CUBE = (chr(code) for code in range(3, 14))
+MOST, LEAST, ABOUT, EITHER = (chr(code) for code in range(14, 18))
 
 _SIGNS = {"€": EURO, "£": POUND, "¥": YEN, "₹": RUPEE, "¢": CENT, "°": DEGREE, "²": SQUARE, "³": CUBE, "×": TIMES,
-          "−": MINUS, "÷": DIVIDED, "’": "'", "‘": "'", "ʼ": "'", "`": "'", "µ": "u", "μ": "u",
+          "−": MINUS, "÷": DIVIDED, "≤": MOST, "≥": LEAST, "≈": ABOUT, "±": EITHER,
+          "’": "'", "‘": "'", "ʼ": "'", "`": "'", "′": "'", "″": '"', "µ": "u", "μ": "u",
           "\u2010": "-", "\u2011": "-", "\u2012": "-", "–": "-", "\u2044": "/",
           # Punctuation of Greek, Armenian, Hebrew, Arabic, Urdu, the scripts of India, Burmese, Ethiopic and Khmer.
           **dict(zip("\u037e\u0589\u05be\u05c3\u060c\u061b\u061f\u06d4\u0964\u0965\u104a\u104b\u1362\u1363\u17d4\u17d5",
@@ -29,6 +32,9 @@ _PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
           "UuUuUuWwYyYZzZzZzs")
 _LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
               "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}
+#: What HTML and SSML write for a character.
+_ENTITY = re.compile("&(amp|lt|gt|quot|apos|rsquo|nbsp|mdash|ldquo|rdquo|hellip|#39);")
+_ENTITIES = {"amp": "&", "quot": '"', "apos": "'", "rsquo": "'", "#39": "'", "nbsp": BLANK}
 #: Fractions, which have blanks around them.
 _LIGATURES.update({sign: f" {number[0]}/{number[1]} " for sign, number in zip(
     "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())})
@@ -38,7 +44,7 @@ _ACCENTS = {0x300: "`", 0x301: "'", 0x302: "^", 0x303: "~", 0x308: ":", 0x327: "
 _ACCENTED = "`'^~:  ,`'^:`'^: ~`'^~:  `'^:'  "
 #: What accented letters sound like; ë like EH, and at the end of a word like IY.
 _SOUNDS: Dict[str, str] = {"a`": "AA", "a'": "AA", "a^": "AA", "c,": "S", "e`": "EH", "e'": "EY", "e^": "EH",
-                           "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "n~": "N Y", "o'": "OW", "o^": "OW",
+                           "e:": "EH IY", "i'": "IY", "i^": "IY", "i:": "IY", "o'": "OW", "o^": "OW",
                            "u'": "UW", "u^": "UW"}
 
 
@@ -53,12 +59,15 @@ class Simple(NamedTuple):
 def simple_characters(text: str) -> List[Simple]:
     """The simple characters of a text."""
     found: List[Simple] = []
-    for place, character in enumerate(text):
-        simple = simplified(character)
-        accent = _accent(character) or _ACCENTS.get(ord(text[place + 1]) if place + 1 < len(text) else 0, " ")
+    place = 0
+    while place < len(text):
+        entity = _ENTITY.match(text, place)
+        simple = _ENTITIES.get(entity[1], NOTHING) if entity else simplified(text[place])
+        accent = _accent(text[place]) or _ACCENTS.get(ord(text[place + 1]) if place + 1 < len(text) else 0, " ")
         for plain in simple:
             sound = _SOUNDS.get(plain.lower() + accent) if simple[0].isalpha() else None
             found.append(Simple(plain, place, tuple(sound.split()) if sound else None))
+        place = entity.end() if entity else place + 1
     return found
 
 

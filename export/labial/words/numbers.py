@@ -28,16 +28,17 @@ END = r"(?![A-Za-z0-9\1])"
 _WHOLE = re.compile(r"[0-9]+(?:,[0-9]{3}(?![0-9]))*")
 _FRACTION = re.compile(r"\.([0-9]+)")
 _DIGITS = re.compile(r"[0-9](?:,?[0-9])*")
-_ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})" + END)
+_ISO = re.compile(r"([0-9]{4})([/-])([0-9]{1,2})\2([0-9]{1,2})(?:" + END + "|(?=T[0-9]))")
 _DATE = re.compile(r"([0-9]{1,2})([/.-])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})" + END)
-_PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4})(?![A-Za-z0-9\1-])"
+_PHONE = re.compile(r"(?:[0-9]{1,4}(?:-[0-9]{2,4}){2,}|[0-9]{3}-[0-9]{4}|[0-9](?:-[0-9]){2,})(?![A-Za-z0-9\1-])"
                     r"|[0-9](?:-[0-9]{2,4})+(?=-[A-Z])"
                     r"|[2-9][0-9]{2}(?P<sign>[. ])[0-9]{3}(?P=sign)[0-9]{4}(?!(?P=sign)?[0-9])(?![A-Za-z\1])")
 _GROUPS = (re.compile(r"[0-9]+(?:[- ][0-9]+)*"), re.compile(r"[0-9]+(?:\.[0-9]+){2,}"))
+_GROUP = re.compile(r"[0-9]+(?![A-Za-z0-9\1%'/:-]|[.,][0-9])")
 _AREA = re.compile(r"[2-9][0-9]{2}(?=\))")
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{2})(?::([0-9]{2}))?(?![0-9:])")
 _SHARE = re.compile(r"([0-9]{1,2})/([0-9]{1,3})(?![A-Za-z0-9\1/])")
-_FEET = re.compile(r"([0-9]{1,2})'([0-9]{1,2})" + END)
+_FEET = re.compile(r"([0-9]{1,2})'([0-9]{1,2})" + END + '"?')
 _ORDINAL = re.compile("(?:st|nd|rd|th)" + END, re.IGNORECASE)
 #: Numbers behind which s is no second, "747s"; and letters that are no units where letters name what is numbered.
 _MODEL, _PLURAL, _LETTER = re.compile("[0-9]{2,3}[1-9]"), re.compile("s" + END), re.compile("[A-Za-z]" + END)
@@ -61,7 +62,11 @@ def currency_of(sign: str) -> int:
 def read_sum(said: Said, place: int) -> int:
     """Reads a sign of money and its number; returns the place behind them."""
     said.context.currency, said.context.named = _SIGNS.index(said.simple[place]), False
-    end, is_lower = _read_amount(said, place + 1, place, False)
+    return _read_amounts(said, place + 1, place)
+
+
+def _read_amounts(said: Said, place: int, at: int) -> int:
+    end, is_lower = _read_amount(said, place, at, False)
     while is_lower:
         end, is_lower = _read_amount(said, end, end, True)
     return end
@@ -97,7 +102,6 @@ def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, 
         read_fraction(said, end)
     if scale:
         said.say(_LETTER_SCALES[scale[1].lower()] + " " + inflected(name, True), after - 1)
-        context.after = ""
         return read_range(said, behind), is_lower
     plural = is_upper or digits != "1" or (fraction is not None and cents is None)
     if cents is None:
@@ -117,12 +121,19 @@ def read_number(said: Said, place: int) -> int:
     is_month = said.context.after == "month"
     is_counted = said.context.after in ("one", "number")
     is_name = said.context.after == "place" or said.letters
+    called = said.context.after if said.context.after in ("call", "phone") else ""
     if said.context.after in ("no", "date"):
         said.correct(place)
         is_month = said.context.short.title() in MONTHS
+    is_sum = said.context.after == "money"
     if said.context.after != "unit":
         said.context.mark = ""
     said.context.after, said.context.tail, said.context.named = "number", 0, False
+    if is_sum and is_start:
+        return _read_amounts(said, place, place)
+    end = _read_group(said, place, called) if called and is_start else None
+    if end is not None:
+        return end
     for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
         end = rule(said, place, is_counted)
         if end is not None:
@@ -152,6 +163,7 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
         assert found is not None
         _say_digits(said, found[0], place)
         end = found.end()
+        said.context.after = "phone" if is_start and len(digits) > 2 else "number"
     else:
         ordinal = _ORDINAL.match(said.simple, end)
         if ordinal:
@@ -174,11 +186,16 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
     while _FRACTION.match(said.simple, end):
         end = read_fraction(said, end)
         said.context.after, said.context.tail = "number", 0
+    if said.at(place - 1) == "+" and said.characters[place].place == 1 and len(digits) < 4:
+        said.context.after = "phone"
     return _behind(said, end) if is_start else end
 
 
 def _behind(said: Said, end: int) -> int:
     """What may follow a number: another one up to which it reaches, or by which it is multiplied."""
+    share = _read_share(said, end + 1, True) if said.at(end) == "-" else None
+    if share:
+        return share
     if said.at(end) in ("x", signs.TIMES) and said.at(end + 1).isdigit():
         said.say("by", end)
         return end + 1
@@ -216,7 +233,8 @@ def _read_date(said: Said, place: int, _: bool) -> Optional[int]:
     say_ordinal(said, str(day), place)
     said.say(" ".join(_year(year)), place)
     said.context.after = ""
-    return found.end()
+    end = found.end() + (said.at(found.end()) == "T")
+    return _read_time(said, end, False) or end
 
 
 def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
@@ -227,7 +245,21 @@ def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
     if not found:
         return None
     _say_digits(said, found[0], place)
-    said.context.after = ""
+    said.context.after = "phone" if found[0].isdigit() else ""
+    return found.end()
+
+
+def _read_group(said: Said, place: int, called: str) -> Optional[int]:
+    """Reads digits of the number of a telephone behind a "call" or other digits of it: one by one, from three on."""
+    found = _GROUP.match(said.simple, place)
+    if not found:
+        return None
+    is_short = len(found[0]) < 3
+    if is_short or (called == "call" and int(found[0][:9]) % 100 == 0 and not _is_coded(found[0])):
+        said.say(" ".join(cardinal(found[0])), place)
+    else:
+        _say_digits(said, found[0], place)
+    said.context.after = called if is_short else "phone"
     return found.end()
 
 
@@ -249,14 +281,17 @@ def _read_time(said: Said, place: int, _: bool) -> Optional[int]:
     hour = int(found[1])
     said.context.after = "time"
     said.say(" ".join(cardinal(str(hour))), place)
-    if found[2] != "00" or found[3]:
+    seconds = found[3] if found[3] and found[3] != "00" else ""
+    if found[2] != "00" or seconds:
         _say_minutes(said, found[2], found.start(2))
+    elif is_range(said, found.end()):
+        return read_range(said, found.end())
     elif 1 <= hour <= 12:
         said.say_tail("o'clock", place)
     else:
         said.say_tail("hundred", place)
-    if found[3]:
-        _say_minutes(said, found[3], found.start(3))
+    if seconds:
+        _say_minutes(said, seconds, found.start(3))
     return read_range(said, found.end())
 
 

@@ -23,7 +23,8 @@ class Context:
     """What the words so far mean for the next one: all as at the beginning of a text."""
 
     #: Which was said last: "one", "number", "time", "sum", "unit", "per", "month", "with", "street", "drive", "avenue"
-    #: or "lane"; "no" or "date", of which what follows may make the word `short`; "day"; "place", which is numbered.
+    #: or "lane"; "money", a sign of it before its sum; "call" or "phone", behind which a number is that of a telephone;
+    #: "no" or "date", of which what follows may make the word `short`; "day"; "place", which is numbered.
     after: str = ""
     currency: int = 0  #: of a sum
     day: int = 0  #: the number that `tail` says, which a month makes an ordinal
@@ -36,6 +37,7 @@ class Context:
     shouting: bool = False  #: the last word was in capitals, but not spelt
     closing: str = ""  #: of a tag or stage direction that the text is in
     left: int = 0  #: words that it may still have
+    quoted: bool = False  #: a quotation has begun with the sign that means inches otherwise
 
 
 class Said:

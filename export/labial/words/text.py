@@ -22,11 +22,15 @@ CHARACTERS, PHONEMES = 255, 96
 _DIRECTION = 8
 
 _SIGNS = {"&": "and", "@": "at", "%": "percent", "+": "plus", "=": "equals", signs.TIMES: "times",
-          signs.DIVIDED: "divided by", signs.SQUARE: "squared", signs.CUBE: "cubed"}
+          signs.DIVIDED: "divided by", signs.SQUARE: "squared", signs.CUBE: "cubed", signs.ABOUT: "about",
+          signs.MOST: "less than or equal to", signs.LEAST: "greater than or equal to", signs.EITHER: "plus or minus"}
+#: Signs that are said before a number.
+_BEFORE = {"#": "number", "<": "less than", ">": "greater than", "~": "about", "^": "to the power of"}
 _POWERS = {signs.SQUARE: "square ", signs.CUBE: "cubic "}
 #: Abbreviations, and words that the trees would misread, with what is said, or - if they are read letter by letter.
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
-prof professor;jr junior;sr senior;vs versus;etc etcetera;approx approximately;dept department;govt government
+prof professor;appt appointment;qty quantity;jr junior;sr senior;vs versus;etc etcetera
+approx approximately;dept department;govt government
 blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
 wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
 mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
@@ -37,7 +41,7 @@ bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay e
 airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -
 uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
 wwi double_you double_you one;wwii double_you double_you two
-haha hah hah;hahaha hah hah hah;hehe hee hee;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
+lmao -;imo -;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
                                .replace("\n", ";").split(";"))
 #: What they mean behind a name; the first two unless another one follows; and words that are no names, at a sentence's
 #: beginning.
@@ -49,12 +53,15 @@ _NO_NAMES = frozenset("""the my our your his her their he she it they we this th
 #: Short names of months and days that are words otherwise; those with a point behind them are none, but the last two.
 _DOUBTFUL = "Jan Mar Mon Sat Sun".split()
 #: Words in short with a point, of which a number makes others, and such that mean others.
-_NUMBERED = {"no": "number", "nos": "numbers", "ca": "circa"}
+_NUMBERED = {"no": "number", "nos": "numbers", "ca": "circa", "p": "page", "ch": "chapter", "op": "opus",
+             "est": "established", "rs": "rupees"}
 _SHORTS = {"gen": "general", "gov": "governor", "sen": "senator", "rep": "representative", "rev": "reverend",
            "ft": "fort", "apt": "apartment", "fig": "figure"}
 #: What is numbered: a letter that stands at such a number is no unit.
 _PLACES = frozenset("""seat seats row gate gates room apartment apt flat suite unit bus exit hall platform section track
     terminal locker fig figure chapter part""".split())
+#: Behind which the number of a telephone stands, and what may be between.
+_CALLS, _CALLED = ("call", "dial"), ("us", "me", "at", "on", "now")
 _SCALES = "hundred thousand million billion trillion".split()
 #: Units behind a number, with names in singular and plural; those after the blank only where nothing is between.
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
@@ -67,6 +74,7 @@ kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ p
 Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
 mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
 rpm are pee em;bpm bee pee em;fps eff pee ess;mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_
+CAD canadian dollar_;AUD australian dollar_;CHF swiss franc_;JPY yen;INR rupee_
 yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square;fl fluid
 M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
@@ -105,10 +113,15 @@ _ENDINGS, _LONGEST_VERB = ("s", "es", "ing"), 12
 #: Words in -s that are not verbs.
 _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours theirs hers towards besides".split())
 
+#: A square bracket and what stands in it, what may follow, and how words begin that are read.
+_BRACKET, _ADDRESS = re.compile(r"\[[^\[\]]*"), re.compile(r"\](?:\(|\[[0-9\]])")
+_TITLE = re.compile(r"\[[A-Z][a-z]*(?: |\Z)")
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z]|'(?=[A-Za-z]))*")
 _POINTED = re.compile(r"[A-Za-z](?:\.[A-Za-z](?![A-Za-z0-9\1]))+")
 _CAMEL = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _STUTTER = re.compile(r"([A-Za-z])-(?=[a-z])(?=(?i:\1))(?!(?:tests?|day|boy|shaped)(?![A-Za-z0-9\1]|'[A-Za-z]))")
+_LAUGH = re.compile("(?i)(h([aeio]))\\1+h?")
+_LAUGHS = {"a": "hah", "e": "hee", "i": "hee", "o": "hoe"}
 _DRAWN_OUT = re.compile(r"(?i)^(?=[^ivx].*[aeiouy]|[aeouy]).*([a-z])\1\1$")
 _ROMAN = re.compile("(X{0,2})(I{1,3}|IV|VI{0,3}|IX)")
 _ONES = "I II III IV V VI VII VIII IX".split()
@@ -181,13 +194,26 @@ class _Reader:
         if self.simple[place] == BLANK:
             self.end_word()
         elif self.simple[place] == self.context.closing:
-            self.context.closing = ""
+            is_address = self.context.closing == "]" and self.said.at(place + 1) == "("
+            self.context.closing = ")" if is_address else ""
         return place + 1
 
     def _open(self, closing: str, place: int) -> int:
         self.context.closing, self.context.left = closing, _DIRECTION
         self._forget()
         return place + 1
+
+    def _is_tag(self, place: int) -> bool:
+        """Whether what a square bracket begins is silent: all but the text of a link, behind which an address or the
+        number of one stands. Of a bracket with several words whose end is not in sight a capital and small letters tell
+        that it is no stage direction."""
+        found = _BRACKET.match(self.simple, place)
+        assert found is not None
+        if self.said.at(place + 1) == BLANK or self.said.at(found.end()) == "[":
+            return False
+        if _ADDRESS.match(self.simple, found.end()):
+            return not re.search("[A-Za-z\1]", found[0])
+        return not _TITLE.match(self.simple, place) or self._is_direction(place, "]")
 
     def _is_direction(self, place: int, closing: str) -> bool:
         found = re.compile("[A-Za-z]+").match(self.simple, place + 1)
@@ -197,7 +223,9 @@ class _Reader:
         follows = self.said.at(found.end())
         if len(word) > _LONGEST_VERB:
             return False
-        if (follows == closing and word in _ALONE) or any(word == verb + end for verb in _VERBS for end in _ENDINGS):
+        if closing in (follows, "]") and word in _ALONE:
+            return True
+        if any(word == verb + end for verb in _VERBS for end in _ENDINGS):
             return True
         return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
                 and not word.endswith("ss") and word not in _NOT_VERBS)
@@ -207,8 +235,10 @@ class _Reader:
     def _read_sign(self, place: int, here: str, before: str) -> int:
         said, follows = self.said, self.said.at(place + 1)
         is_tag = here == "<" and (follows in "/!?" or (follows.isascii() and follows.isalpha()))
-        if is_tag or (here == "[" and follows != BLANK):
+        if is_tag or (here == "[" and self._is_tag(place)):
             return self._open("]" if here == "[" else ">", place)
+        if here == "]" and follows == "(":
+            return self._open(")", place + 1)
         if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
             return self._open(")" if here == "(" else "*", place)
         if self.context.after in ("date", "day", "place") and here in ",-/" and before != BLANK and not self.address:
@@ -216,6 +246,12 @@ class _Reader:
             return place + 1
         after = self._forget()
         self.context.tail, self.context.named = 0, False
+        if after in ("call", "phone") and here in "(+):":
+            self.context.after = after
+        if here == "-" and after in ("one", "number") and re.match("[A-Za-z]{2}", self.simple[place + 1 :]):
+            end = self._read_unit(place + 1, "one", True)
+            if end:
+                return end
         said.letters &= here == "-"
         is_counted = after in ("one", "number")
         if here == signs.DEGREE:
@@ -234,12 +270,19 @@ class _Reader:
             said.say(inflected("cent_", after == "number"), place)
         elif numbers.currency_of(here) >= 0 and is_counted:
             said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
-        elif here == "#" and follows.isdigit():
-            said.say("number", place)
+        elif numbers.currency_of(here) >= 0 and follows == BLANK:
+            self.context.after, self.context.currency = "money", numbers.currency_of(here)
+        elif here in _BEFORE and follows.isdigit():
+            said.say(_BEFORE[here], place)
         elif here == "#" and before.isascii() and before.isalpha() and not signs.is_inside(follows):
             said.say("sharp", place)
-        elif here == "<" and follows.isdigit():
-            said.say("less than", place)
+        elif here == '"' and follows != BLANK and not signs.is_inside(before):
+            self.context.quoted = True
+        elif here == '"':
+            if before.isdigit() and not self.context.quoted:
+                said.say("inch", place)
+                self.context.after = "unit"
+            self.context.quoted = False
         elif here in _SIGNS:
             said.say(_SIGNS[here], place)
         return numbers.read_range(said, place + 1) if here == "%" else place + 1
@@ -256,7 +299,8 @@ class _Reader:
         """Signs that are said within an address, a minus before a number."""
         said = self.said
         is_small = follows.isascii() and follows.islower()
-        if here == "." and is_small and (signs.is_inside(before) or before == BLANK):
+        is_letter = follows.isascii() and follows.isalpha()
+        if here == "." and (is_small and signs.is_inside(before) or is_letter and before == BLANK):
             said.say("dot", place)
             self.address = True
         elif here == ":" and signs.is_inside(before) and self.simple.startswith("//", place + 1):
@@ -279,7 +323,7 @@ class _Reader:
         pointed = _POINTED.match(self.simple, place)
         if pointed:
             return self._read_pointed(pointed[0], place, after)
-        if after in ("one", "number", "per"):
+        if after in ("one", "number", "per", "phone"):
             end = self._read_unit(place, after, before == BLANK)
             if end:
                 return end
@@ -311,11 +355,14 @@ class _Reader:
         """Reads a unit behind a number; returns the place behind it, or 0."""
         found = re.compile(r"[A-Za-z]{1,4}(?![A-Za-z0-9\1]|'[A-Za-z])").match(self.simple, place)
         context, unit = self.context, found[0] if found else ""
-        if not found or unit not in _UNITS or (is_apart and unit in _ATTACHED and context.mark != "f"):
+        if not found or unit not in _UNITS:
+            return 0
+        is_inch = unit == "in" and self.said.at(found.end()) == "."
+        if is_apart and unit in _ATTACHED and context.mark != "f" and not is_inch:
             return 0
         name = "minute_" if context.mark == "h" and unit == "m" else _UNITS[unit]
         power = _POWERS.get(self.said.at(found.end()), "")
-        self.said.say(power + inflected(name, after == "number"), place)
+        self.said.say(power + inflected(name, after in ("number", "phone")), place)
         context.after = "unit" if unit not in ("M", "bn", "sq", "fl") else "number"
         context.tail, context.mark = 0, _PARTED.get(name, "")
         end = found.end() + bool(power)
@@ -335,6 +382,8 @@ class _Reader:
             said.say(_SAINTS[after], place)
         if after == "place" and (len(run) == 1 or small in ("and", "or", "to")):
             context.after = "place"
+        if after == "call" and small in _CALLED:
+            context.after = "call"
         date = _date_of(run)
         owner = _owner(run)
         number = _roman(owner, named or after == "place")
@@ -358,22 +407,31 @@ class _Reader:
         elif date:
             self._read_date(run, date, places, after, follows == ".")
             return run != date
-        elif follows == "." and small in _NUMBERED and run in (small, small.title()) and not self.address:
-            self._spell_tail(run, places)
+        elif follows == "." and small in _NUMBERED and run in (small, small.title()) and not self.address and (
+                run == small or len(run) > 1):
+            self._spell_tail(run, places, self._is_spelt(run, before, follows, shouting))
             context.after, context.short = "no", _NUMBERED[small]
             return True
         elif follows == "." and small in _SHORTS and run != small and not self.address:
             said.say(_SHORTS[small], place)
             context.after = "place" if small in _PLACES else context.after
             return True
+        elif run == "x" and after in ("one", "number", "unit") and before == follows == BLANK:
+            said.say("by", place)
+        elif _LAUGH.fullmatch(run):
+            for letter in range(0, len(run) - 1, 2):
+                said.say(_LAUGHS[small[1]], places[letter])
         elif run == "w" and follows == "/":
             said.say("with", place)
             context.after = "with"
         elif small == "o" and after == "with":
             said.say("out", place)
-        elif small in _PLACES:
+        elif small in _PLACES and before not in (";", "&"):
             self._spell(run, places)
             context.after, context.shouting = "place", run.isupper()
+        elif small in _CALLS and before not in (";", "&"):
+            self._spell(run, places)
+            context.after, context.shouting = "call", run.isupper()
         elif small in _MEANINGS and before not in (";", "&"):
             if _MEANINGS[small] == "-":
                 said.say_names(small, places, False)
@@ -406,13 +464,17 @@ class _Reader:
         elif is_sure or not context.after:
             self.said.say(name.lower(), place)
         else:
-            self._spell_tail(run, places)
+            self._spell_tail(run, places, False)
             context.after, context.short = "date", name.lower()
 
-    def _spell_tail(self, run: str, places: Sequence[int]) -> None:
-        """Spells a word that the next one may take back."""
+    def _spell_tail(self, run: str, places: Sequence[int], is_spelt: bool) -> None:
+        """Says a word that the next one may take back."""
         before = len(self.said.phonemes)
-        self._spell(run, places)
+        letters = _capitals(run) or _owner(run)
+        if is_spelt:
+            self.said.say_names(letters.lower(), places, letters != run)
+        else:
+            self._spell(run, places)
         self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
 
     def _month(self, place: int, after: str) -> str:
