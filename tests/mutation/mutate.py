@@ -54,6 +54,8 @@ FLAGS = ["-Werror=int-conversion", "-Werror=incompatible-pointer-types",
          "-DLABIAL_TEST_SHARE=10"]
 INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib/words", "lib", "tests/c",
                                                 "tests/conformance", "tests/device", "boards")]
+#: What compiles the library as it is and the tests, if it is compiled again (.ci/run): ccache.
+LAUNCHER = os.environ.get("CMAKE_C_COMPILER_LAUNCHER", "").split()
 TABLES = sorted([*(LIB / "models").glob("*.c"), *(LIB / "words").glob("*.c")])
 
 
@@ -95,7 +97,7 @@ class Bench:
 
     def compile(self, build: str, source: Path, target: Path) -> List[object]:
         """The command that compiles a file of the library, from wherever it lies."""
-        return [self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, "-c", source, "-o", target]
+        return [*LAUNCHER, self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, "-c", source, "-o", target]
 
     def optimised(self, source: Path, target: Path) -> bytes:
         """The optimised code of a file in all builds, for comparison."""
@@ -113,12 +115,14 @@ class Bench:
     def build_tests(self, build: str) -> None:
         """Compiles and links the tests of a build, and measures them."""
         suites = ROOT / "tests" / "c"
-        helpers = [path for path in sorted(suites.glob("*.c")) if not path.name.startswith("test_")] + TABLES
+        helpers = [path for path in sorted(suites.glob("*.c")) if not path.name.startswith("test_")]
         archive = self.folder / build / "helpers"
         archive.mkdir(exist_ok=True)
-        for path in helpers:
-            run([self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, "-c", path, "-o", archive / f"{path.stem}.o"])
+        for path in helpers + TABLES * (build == "default"):
+            run(self.compile(build, path, archive / f"{path.stem}.o"))
         objects = sorted(archive.glob("*.o"))
+        if build != "default":  # tables depend on no limit
+            objects += [self.folder / "default" / "helpers" / f"{path.stem}.o" for path in TABLES]
         programs: Dict[str, List[object]] = {
             path.stem: [path, *objects, *self.cmocka] for path in sorted(suites.glob("test_*.c"))
             if build == "default" or path.stem in LIMITED}
