@@ -101,14 +101,17 @@ def device_model(exported: ExportedModel) -> DeviceModel:
 
 def device_frames(exported: ExportedModel, streams: Sequence[Sequence[Tuple[int, int]]]) -> List[np.ndarray]:
     """The library's frames, (T, 13) int64, of each stream of (phoneme number, milliseconds) alone."""
-    model, frames = device_model(exported), []
-    for phonemes in streams:
-        with DeviceStream(model, exact=True) as stream:
-            for number, milliseconds in phonemes:
-                stream.push(number, milliseconds)
-            stream.end()
-            frames.append(np.array(stream.drain(), dtype=np.int64).reshape(-1, CHANNELS))
-    return frames
+    model = device_model(exported)
+    return [stream_frames(model, phonemes) for phonemes in streams]
+
+
+def stream_frames(model: DeviceModel, phonemes: Sequence[Tuple[int, int]]) -> np.ndarray:
+    """The library's frames, (T, 13) int64, of a stream of (phoneme number, milliseconds)."""
+    with DeviceStream(model, exact=True) as stream:
+        for number, milliseconds in phonemes:
+            stream.push(number, milliseconds)
+        stream.end()
+        return np.array(stream.drain(), dtype=np.int64).reshape(-1, CHANNELS)
 
 
 def _of_kept_transitions(model: Model, exported: ExportedModel) -> Model:

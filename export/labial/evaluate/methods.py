@@ -9,7 +9,7 @@ import numpy as np
 
 from labial.errors import LabialError
 from labial.evaluate.baselines import dominance, hmm, ridge, steps
-from labial.evaluate.check import device_frames
+from labial.evaluate.check import device_model, stream_frames
 from labial.evaluate.material import Timeline
 from labial.evaluate.training import Predictor, Training
 from labial.reference.synthesis import synthesise
@@ -24,7 +24,8 @@ def reference(model: Model) -> Predictor:
 
 def device(exported: ExportedModel) -> Predictor:
     """A model's exported tables in the integer C library."""
-    return lambda timeline: device_frames(exported, [timeline.stream])[0].astype(np.float64)
+    model = device_model(exported)
+    return lambda timeline: stream_frames(model, timeline.stream).astype(np.float64)
 
 
 class Method(NamedTuple):

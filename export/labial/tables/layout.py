@@ -56,8 +56,7 @@ class Table:
 
     def packed(self) -> bytes:
         """The rows as little-endian bytes."""
-        rows = self.rows.reshape(len(self.rows), len(self.layout)).tolist()
-        return b"".join(struct.pack("<" + self.layout, *row) for row in rows)
+        return struct.pack("<" + self.layout * len(self.rows), *self.rows.ravel().tolist())
 
 
 def _flat(name: str, kind: str, layout: str, values: Optional[np.ndarray], group: str = "") -> Table:
