@@ -68,7 +68,7 @@ class Parameters:
 
 def _shares(around: Near, power: np.ndarray, parameters: Parameters, rate_at: np.ndarray) -> Tuple[np.ndarray, ...]:
     """Shares of the segments (T, W), that sum to 1, and theta |distance|^p, (T, W)."""
-    decay = np.exp(parameters.rate.ravel()[rate_at]) * power
+    decay = np.exp(parameters.rate.ravel())[rate_at] * power
     log = np.where(around.present, parameters.strength[around.phoneme] - decay, -np.inf)
     share = np.exp(log - log.max(axis=1, keepdims=True))
     return share / share.sum(axis=1, keepdims=True), decay
