@@ -662,7 +662,7 @@ def _mutated(data: bytes, chance: random.Random) -> bytes:
 STUMBLES = (b"\xff\xff\xff\xff", b"\0\0\0\0", b"\x7f\xff\xff\xff", b"-1", b"0", b"1e999", b"nan", b"9" * 20, b"[" * 50,
             b"{", b'"', b"\n", b"\xed\xa0\x80", b"null", b"true", b"")  # fmt: skip
 #: Seconds for each kind of file.
-FUZZED = 4.0 if "LABIAL_REQUIRE_ALL" in os.environ else 0.6
+FUZZED = 2.0 if "LABIAL_REQUIRE_ALL" in os.environ else 0.6
 
 
 @needs_runtime
