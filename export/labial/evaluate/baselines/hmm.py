@@ -182,7 +182,11 @@ def log_likelihoods(values: np.ndarray, row: np.ndarray, mean: np.ndarray, varia
     F), `row` (N,) the frames' rows of `mean` and `variance` (n, S, F)."""
     result = -0.5 * np.log(variance).sum(axis=2)[row]
     for k in range(values.shape[1]):
-        result -= 0.5 * (values[:, k, None] - mean[row, :, k]) ** 2 / variance[row, :, k]
+        away = values[:, k, None] - mean[:, :, k].take(row, axis=0)
+        np.square(away, out=away)
+        away *= 0.5
+        away /= variance[:, :, k].take(row, axis=0)
+        result -= away
     return result
 
 
