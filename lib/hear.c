@@ -117,6 +117,22 @@ static int hear_at_rate(labial_hear_t *hear, int32_t sample)
     return 1;
 }
 
+/* Hears samples at the sound's rate, of one channel. At 16 kHz most of them only fill a window. */
+static void hear_mono(labial_hear_t *hear, const int16_t *samples, size_t count)
+{
+    size_t i = 0;
+    if (hear->convert.reach > 0) {
+        while (i < count && hear_at_rate(hear, samples[i]))
+            i++;
+        return;
+    }
+    while (i < count) {
+        i += labial_hear_features_fill(&hear->features, samples + i, count - i);
+        if (i < count && !hear_sound(hear, samples[i++]))
+            return;
+    }
+}
+
 /* Hears what is still to come when the sound is over. The last sample stays: an offset does not end with a step. */
 static int hear_rest(labial_hear_t *hear)
 {
@@ -194,8 +210,7 @@ int labial_hear_push(labial_hear_t *hear, const int16_t *samples, size_t count)
     if (hear->ended)
         return LABIAL_ERROR_STATE;
     if (hear->channels == 1u)
-        for (; count > 0 && hear_at_rate(hear, samples[0]); count--)
-            samples++;
+        hear_mono(hear, samples, count);
     else
         for (; count > 0 && hear_at_rate(hear, (samples[0] + samples[1]) >> 1); count--)
             samples += 2;

@@ -272,6 +272,16 @@ void labial_hear_features_reset(labial_hear_features_t *features)
     labial_hear_level_wait(&features->level);
 }
 
+size_t labial_hear_features_fill(labial_hear_features_t *features, const int16_t *samples, size_t count)
+{
+    const size_t room = features->filled > LABIAL_HEAR_SHARED ? LABIAL_HEAR_WINDOW_ - 1u - features->filled : 0u;
+    if (count > room)
+        count = room;
+    memcpy(features->window + features->filled, samples, count * sizeof *samples);
+    features->filled = (uint16_t)(features->filled + count);
+    return count;
+}
+
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
 {
     int16_t *const window = features->window;

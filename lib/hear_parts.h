@@ -52,6 +52,9 @@ static inline int16_t labial_hear_features_last(const labial_hear_features_t *fe
                                                  : features->tail[LABIAL_HEAR_SHARED - 1];
 }
 
+/* Takes of `count` samples those that a hop which has begun lacks, but for the last one. Returns how many. */
+size_t labial_hear_features_fill(labial_hear_features_t *features, const int16_t *samples, size_t count);
+
 /* Takes a sample. Returns whether it completes a frame: then `bands` and `loud` are the frame's, and the window is free
  * until the next sample. */
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample);

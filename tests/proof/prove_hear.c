@@ -45,6 +45,14 @@ void labial_hear_features_reset(labial_hear_features_t *features)
     features->filled = 0;
 }
 
+size_t labial_hear_features_fill(labial_hear_features_t *features, const int16_t *samples, size_t count)
+{
+    const size_t taken = (size_t)Frama_C_interval(0, LABIAL_HEAR_HOP_);
+    features->window[LABIAL_HEAR_WINDOW_ - 2] = *samples;
+    features->filled = (uint16_t)Frama_C_interval(LABIAL_HEAR_SHARED, LABIAL_HEAR_WINDOW_ - 1);
+    return taken < count ? taken : count;
+}
+
 int labial_hear_features_take(labial_hear_features_t *features, int16_t sample)
 {
     features->window[0] = features->window[LABIAL_HEAR_WINDOW_ - 1] = sample;

@@ -66,8 +66,9 @@ static void any_level(labial_hear_level_t *level)
 int prove_hear_features(void)
 {
     static labial_hear_features_t heard;
-    static int16_t window[LABIAL_HEAR_WINDOW_], features[LABIAL_HEAR_BANDS];
+    static int16_t window[LABIAL_HEAR_WINDOW_], features[LABIAL_HEAR_BANDS], samples[LABIAL_HEAR_WINDOW_];
     labial_hear_level_t level;
+    unsigned filled;
     any_level(&level);
     FILL(window);
     labial_hear_features(window, any_int, &level, features);
@@ -82,6 +83,11 @@ int prove_hear_features(void)
     labial_hear_features_begun(&heard);
     labial_hear_features_last(&heard);
     labial_hear_features_take(&heard, any_int16);
+    FILL(samples);
+    for (filled = 0; filled < LABIAL_HEAR_WINDOW_; filled++) {
+        heard.filled = (uint16_t)filled;
+        labial_hear_features_fill(&heard, samples, (size_t)Frama_C_interval(0, LABIAL_HEAR_WINDOW_));
+    }
     return 0;
 }
 
