@@ -223,7 +223,7 @@ def _parts(data: bytes) -> Tuple[bytes, Optional[bytes]]:
     if data[:4] != b"glTF":  # whatever the file is called
         if data.startswith(b"version https://git-lfs"):
             raise ValueError("it is a pointer of Git LFS: git lfs pull fetches the file")
-        if not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"{"):
+        if not data.lstrip(b"\xef\xbb\xbf \t\r\n").startswith((b"{", b"[")):
             raise ValueError("it begins neither with glTF nor with JSON")
         return data, None
     _, version, _ = struct.unpack("<4sII", data[:12])
