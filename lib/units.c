@@ -162,14 +162,12 @@ static void relabel(labial_units_t *units, unsigned slot, uint8_t silence, unsig
  * but LABIAL_CONTACT_FRAMES of them at least, and all but LABIAL_CONTACT_OPEN. */
 static int lies_open(uint32_t frame, uint32_t frames)
 {
-    uint32_t held = (frames + 1u) / 2u;
-    int32_t before;
-    if (frames > 2u * LABIAL_CONTACT_OPEN)
-        held = frames - LABIAL_CONTACT_OPEN;
-    if (held < LABIAL_CONTACT_FRAMES)
-        held = LABIAL_CONTACT_FRAMES;
-    before = ((int32_t)frames - (int32_t)held) >> 1; /* below 0 where there are less than those */
-    return frame - (uint32_t)before >= held;
+    int32_t open = LABIAL_CONTACT_OPEN; /* frames; below 0 as many as are borrowed */
+    if (frames < 2u * LABIAL_CONTACT_FRAMES)
+        open = (int32_t)frames - LABIAL_CONTACT_FRAMES;
+    else if (frames < 2u * LABIAL_CONTACT_OPEN)
+        open = (int32_t)frames / 2;
+    return frame - (uint32_t)(open >> 1) >= frames - (uint32_t)open;
 }
 
 /* Progress to rest in a pause, before its last frames, which lead to the next phoneme. */
