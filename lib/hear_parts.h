@@ -52,7 +52,7 @@ static inline int16_t labial_hear_features_last(const labial_hear_features_t *fe
                                                  : features->tail[LABIAL_HEAR_SHARED - 1];
 }
 
-/* Takes of `count` samples those that a hop which has begun lacks, but for the last one. Returns how many. */
+/* Takes as many of `count` samples as a hop that has begun still lacks, except its last one. Returns how many. */
 size_t labial_hear_features_fill(labial_hear_features_t *features, const int16_t *samples, size_t count);
 
 /* Takes a sample. Returns whether it completes a frame: then `bands` and `loud` are the frame's, and the window is free

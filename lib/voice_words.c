@@ -120,8 +120,8 @@ static int is_closed(labial_voice_t *voice, const labial_voice_utterance_t *utte
     return 0;
 }
 
-/* Whether the square bracket at the current character is a link's, [text](address) or [text][1], and 2 if there are
- * letters in it, which are read. */
+/* 0 if the square bracket at the current character is not that of a link, [text](address) or [text][1]; 2 if there are
+ * letters in it, so that it is read; else 1. */
 static unsigned is_link(labial_voice_t *voice, const labial_voice_utterance_t *utterance)
 {
     uint32_t at = voice->plan.at;

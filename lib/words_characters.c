@@ -140,7 +140,8 @@ static unsigned simplified(uint32_t code, unsigned *pending)
     return NO_CHARACTER;
 }
 
-/* The code of what HTML and SSML write for a character behind an ampersand, moving behind it; or that of "&". */
+/* Reads an entity of HTML or SSML such as "&amp;", whose ampersand was read. Returns the code of its character, or that
+ * of "&" where there is no entity. */
 static unsigned entity(labial_words_place_t *here)
 {
     static const struct {

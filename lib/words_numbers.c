@@ -302,7 +302,7 @@ static void read_plain(labial_words_reading_t *reading, int is_start)
         read_behind(reading);
 }
 
-/* Reads digits of the number of a telephone behind a "call" or other digits of it: one by one, from three on. */
+/* Reads a group of a telephone number, behind "call" or another group: digit by digit if it has three or more. */
 static int read_group(labial_words_reading_t *reading, unsigned after)
 {
     labial_words_place_t next = reading->here;

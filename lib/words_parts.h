@@ -85,7 +85,7 @@ typedef struct {
     unsigned before;     /* of the one before, a blank at the beginning */
     unsigned accent;     /* of the current one, 0 for none */
     unsigned pending;    /* further characters of a ligature or a fraction, the next one in the low byte */
-    unsigned more;       /* characters of the text, beside the current one, that it stands for: of "&amp;" */
+    unsigned more;       /* further characters of the text that the current one stands for, as of "&amp;" */
 } labial_words_place_t;
 
 /* A place in a text, and the word that it becomes. */

@@ -234,8 +234,8 @@ static int has_own_behind(const labial_words_place_t *here, const labial_words_o
 
 /* ---- Signs ------------------------------------------------------------------------------------------------------ */
 
-/* Whether a word in brackets or asterisks is a stage direction; the bracket is here, behind a word in square ones there
- * is no letter. */
+/* Whether a stage direction stands in the brackets or asterisks that begin here. In square ones other words may follow
+ * it. */
 static int is_direction(const labial_words_place_t *here, unsigned closing)
 {
     labial_words_place_t next = *here;
@@ -266,8 +266,8 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
 }
 
 /* Whether what a square bracket begins is silent: all but the text of a link, behind which an address or the number of
- * one stands. Of a bracket with several words whose end is not in sight a capital and small letters tell that it is no
- * stage direction. */
+ * one stands. Where the end is not in sight, since words come one by one, a first word with a capital and small letters
+ * is taken for the text of a link, unless it is a stage direction. */
 static int is_tag(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here, word;
@@ -351,7 +351,7 @@ static void read_joint(labial_words_reading_t *reading)
     }
 }
 
-/* Reads the sign of a quotation, which means inches behind a number where none has begun. */
+/* Reads a double quotation mark: inches behind a number, unless a quotation has begun with one. */
 static void read_quotation(labial_words_reading_t *reading)
 {
     labial_words_context_t *const context = reading->context;

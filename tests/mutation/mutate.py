@@ -54,7 +54,7 @@ FLAGS = ["-Werror=int-conversion", "-Werror=incompatible-pointer-types",
          "-DLABIAL_TEST_SHARE=10"]
 INCLUDES = [f"-I{ROOT / folder}" for folder in ("include", "lib/models", "lib/words", "lib", "tests/c",
                                                 "tests/conformance", "tests/device", "boards")]
-#: What compiles the library as it is and the tests, if it is compiled again (.ci/run): ccache.
+#: Runs the compiler for what no mutant changes: ccache, where the environment names it (.ci/run).
 LAUNCHER = os.environ.get("CMAKE_C_COMPILER_LAUNCHER", "").split()
 TABLES = sorted([*(LIB / "models").glob("*.c"), *(LIB / "words").glob("*.c")])
 

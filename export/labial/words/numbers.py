@@ -250,7 +250,7 @@ def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
 
 
 def _read_group(said: Said, place: int, called: str) -> Optional[int]:
-    """Reads digits of the number of a telephone behind a "call" or other digits of it: one by one, from three on."""
+    """Reads a group of a telephone number, behind "call" or another group: digit by digit if it has three or more."""
     found = _GROUP.match(said.simple, place)
     if not found:
         return None

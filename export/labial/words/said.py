@@ -37,7 +37,7 @@ class Context:
     shouting: bool = False  #: the last word was in capitals, but not spelt
     closing: str = ""  #: of a tag or stage direction that the text is in
     left: int = 0  #: words that it may still have
-    quoted: bool = False  #: a quotation has begun with the sign that means inches otherwise
+    quoted: bool = False  #: a quotation has begun with the mark that otherwise means inches
 
 
 class Said:
