@@ -47,38 +47,12 @@ extern "C" {
 /* Most frames that a player keeps: 11 minutes. */
 #define LABIAL_BESIDE_FRAMES_MAX 32768u
 
-/* Calls of labial_beside_tick() for which the last frame stays when no other comes, 1 .. 120: 100 ms. */
-#ifndef LABIAL_BESIDE_HOLD
-#define LABIAL_BESIDE_HOLD 5
-#endif
-
-/* Calls in which the face then eases to rest, 1 .. 120: 120 ms. */
-#ifndef LABIAL_BESIDE_EASE
-#define LABIAL_BESIDE_EASE 6
-#endif
-
-#if LABIAL_BESIDE_HOLD < 1 || LABIAL_BESIDE_HOLD > 120
-#error "LABIAL_BESIDE_HOLD must be a number from 1 to 120."
-#endif
-#if LABIAL_BESIDE_EASE < 1 || LABIAL_BESIDE_EASE > 120
-#error "LABIAL_BESIDE_EASE must be a number from 1 to 120."
-#endif
-
 /* A player; its members are private. */
 typedef struct labial_beside labial_beside_t;
 
 /* Bytes of memory for so many outputs and frames, a constant expression when they are. The frames must cover the sound
  * that the server sends before it is heard; a power of two wastes nothing. */
 #define LABIAL_BESIDE_SIZE(outputs, frames) ((size_t)(outputs)*4u + ((size_t)(outputs) + 1u) * (frames))
-
-/* A change in the units of an output whose bytes 0 and 255 stand for at_0 and at_255, in bytes for
- * labial_beside_limit(): LABIAL_BESIDE_CHANGE(100, 1400, 1900) is 51. A constant expression; 1 .. 255. */
-#define LABIAL_BESIDE_SPAN_(at_0, at_255) ((at_255) < (at_0) ? (long)(at_0) - (at_255) : (long)(at_255) - (at_0))
-#define LABIAL_BESIDE_CHANGE(change, at_0, at_255)                                                                     \
-    ((change) >= LABIAL_BESIDE_SPAN_(at_0, at_255) ? 255u                                                              \
-     : (change)*255L < 2 * LABIAL_BESIDE_SPAN_(at_0, at_255)                                                           \
-         ? 1u                                                                                                          \
-         : (unsigned)((change)*255L / LABIAL_BESIDE_SPAN_(at_0, at_255)))
 
 /*
  * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`.
@@ -145,6 +119,34 @@ int labial_beside_cancel(labial_beside_t *player, uint32_t milliseconds);
  * 8,000,000.
  */
 int32_t labial_beside_value(uint8_t byte, int32_t at_0, int32_t at_255);
+
+/* ---- Limits and times -------------------------------------------------------------------------------------------- */
+
+/* A change in the units of an output whose bytes 0 and 255 stand for at_0 and at_255, in bytes for
+ * labial_beside_limit(): LABIAL_BESIDE_CHANGE(100, 1400, 1900) is 51. A constant expression; 1 .. 255. */
+#define LABIAL_BESIDE_SPAN_(at_0, at_255) ((at_255) < (at_0) ? (long)(at_0) - (at_255) : (long)(at_255) - (at_0))
+#define LABIAL_BESIDE_CHANGE(change, at_0, at_255)                                                                     \
+    ((change) >= LABIAL_BESIDE_SPAN_(at_0, at_255) ? 255u                                                              \
+     : (change)*255L < 2 * LABIAL_BESIDE_SPAN_(at_0, at_255)                                                           \
+         ? 1u                                                                                                          \
+         : (unsigned)((change)*255L / LABIAL_BESIDE_SPAN_(at_0, at_255)))
+
+/* Calls of labial_beside_tick() for which the last frame stays when no other comes, 1 .. 120: 100 ms. */
+#ifndef LABIAL_BESIDE_HOLD
+#define LABIAL_BESIDE_HOLD 5
+#endif
+
+/* Calls in which the face then eases to rest, 1 .. 120: 120 ms. */
+#ifndef LABIAL_BESIDE_EASE
+#define LABIAL_BESIDE_EASE 6
+#endif
+
+#if LABIAL_BESIDE_HOLD < 1 || LABIAL_BESIDE_HOLD > 120
+#error "LABIAL_BESIDE_HOLD must be a number from 1 to 120."
+#endif
+#if LABIAL_BESIDE_EASE < 1 || LABIAL_BESIDE_EASE > 120
+#error "LABIAL_BESIDE_EASE must be a number from 1 to 120."
+#endif
 
 /* ---- Private ----------------------------------------------------------------------------------------------------- */
 

@@ -66,8 +66,7 @@ typedef struct {
 /*
  * A face that laughs with the corners of its mouth and speaks with its lips and jaw: corners .9, protrusion .6, jaw and
  * lips .35. Lips are closed up to 120 FAP units of opening, free from 240 on; the lower lip touches up to 150 units of
- * drop and is free from 270 on. These limits suit the bundled voice, whose p, b, m close below 120 units in nearly all
- * cases; a talker whose lips close less, or more, needs other limits.
+ * drop and is free from 270 on, as suits the bundled voice.
  */
 extern const labial_blend_t labial_blend_default;
 

@@ -56,26 +56,6 @@ extern "C" {
 /* A face; its members are private. */
 typedef struct labial_face labial_face_t;
 
-/* Ticks for which the last frame stays when no other comes, 1 .. 120: 100 ms at 50 frames per second. */
-#ifndef LABIAL_FACE_HOLD
-#define LABIAL_FACE_HOLD 5
-#endif
-
-/* Ticks in which the outputs then go to rest, 1 .. 120, or more where their limits need it: 120 ms. */
-#ifndef LABIAL_FACE_EASE
-#define LABIAL_FACE_EASE 6
-#endif
-
-#if LABIAL_FACE_HOLD < 1 || LABIAL_FACE_HOLD > 120
-#error "LABIAL_FACE_HOLD must be a number from 1 to 120."
-#endif
-#if LABIAL_FACE_EASE < 1 || LABIAL_FACE_EASE > 120
-#error "LABIAL_FACE_EASE must be a number from 1 to 120."
-#endif
-
-/* Milliseconds that a clock may jump forward for labial_face_due() to catch up; of more it takes no account. */
-#define LABIAL_FACE_CATCH_UP 1000u
-
 /* Most frames of look-ahead. */
 #define LABIAL_FACE_AHEAD_MAX 1000u
 
@@ -83,16 +63,6 @@ typedef struct labial_face labial_face_t;
  * for each output's value, its change, what is wanted of it, and each of ahead + 1 frames. labial_face_t has 40
  * more. */
 #define LABIAL_FACE_SIZE(outputs, ahead) ((size_t)4 * (size_t)(outputs) * ((size_t)(ahead) + 4u))
-
-/*
- * Ticks in which an output with these limits, 0 for none, comes to rest from anywhere within its `range`, maximum less
- * minimum, however it moves: it brakes, travels and stops.
- */
-#define LABIAL_FACE_TRAVEL(range, slew, acceleration)                                                                  \
-    ((acceleration) > 0 ? (range) / LABIAL_FACE_SPEED_(slew, acceleration) +                                           \
-                              3 * (LABIAL_FACE_SPEED_(slew, acceleration) / (acceleration)) + 8                        \
-     : (slew) > 0 ? (range) / (slew) + 2                                                                               \
-                  : 2)
 
 /*
  * Prepares a face at rest. `frames_per_second` is that of the source, 1 .. 1000: for labial_face_due() alone. `ahead`
@@ -212,6 +182,38 @@ unsigned labial_face_attached(const labial_face_t *face);
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
 int labial_face_place(labial_face_t *face, const int32_t *values);
+
+/* ---- Times ------------------------------------------------------------------------------------------------------- */
+
+/* Ticks for which the last frame stays when no other comes, 1 .. 120: 100 ms at 50 frames per second. */
+#ifndef LABIAL_FACE_HOLD
+#define LABIAL_FACE_HOLD 5
+#endif
+
+/* Ticks in which the outputs then go to rest, 1 .. 120, or more where their limits need it: 120 ms. */
+#ifndef LABIAL_FACE_EASE
+#define LABIAL_FACE_EASE 6
+#endif
+
+#if LABIAL_FACE_HOLD < 1 || LABIAL_FACE_HOLD > 120
+#error "LABIAL_FACE_HOLD must be a number from 1 to 120."
+#endif
+#if LABIAL_FACE_EASE < 1 || LABIAL_FACE_EASE > 120
+#error "LABIAL_FACE_EASE must be a number from 1 to 120."
+#endif
+
+/* Milliseconds that a clock may jump forward for labial_face_due() to catch up; of more it takes no account. */
+#define LABIAL_FACE_CATCH_UP 1000u
+
+/*
+ * Ticks in which an output with these limits, 0 for none, comes to rest from anywhere within its `range`, maximum less
+ * minimum, however it moves: it brakes, travels and stops.
+ */
+#define LABIAL_FACE_TRAVEL(range, slew, acceleration)                                                                  \
+    ((acceleration) > 0 ? (range) / LABIAL_FACE_SPEED_(slew, acceleration) +                                           \
+                              3 * (LABIAL_FACE_SPEED_(slew, acceleration) / (acceleration)) + 8                        \
+     : (slew) > 0 ? (range) / (slew) + 2                                                                               \
+                  : 2)
 
 /* ---- Private ----------------------------------------------------------------------------------------------------- */
 

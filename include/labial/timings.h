@@ -43,16 +43,6 @@
 extern "C" {
 #endif
 
-/* Longest field (label with context, number or word) and longest label, in bytes. */
-#define LABIAL_TIMINGS_FIELD_MAX 511
-#define LABIAL_TIMINGS_LABEL_MAX 63
-
-/* Latest time that is believed: 1,000,000 seconds, in nanoseconds. */
-#define LABIAL_TIMINGS_TIME_MAX 1000000000000000u
-
-/* Overlaps and gaps up to this many nanoseconds come from rounding. */
-#define LABIAL_TIMINGS_TOLERANCE 1000000u
-
 /* The formats; AUTO is told from the first line that is no comment. Their names, in this order, are
  * labial_timings_format_name()'s. */
 typedef enum {
@@ -66,28 +56,13 @@ typedef enum {
     LABIAL_TIMINGS_TEXTGRID
 } labial_timings_format_t;
 
-/* A phoneme, a silence or a laugh in time. Texts end with NUL and are valid until the parser's next call. */
-typedef struct {
-    uint64_t start,
-        end;           /* nanoseconds from the text's beginning; a start may be before the end of the one before it, by
-                            LABIAL_TIMINGS_TOLERANCE at most, and every end is at the start or behind it */
-    uint64_t apex;     /* when the sound is loudest, within start and end but for the tolerance; of lab alone */
-    const char *label; /* as written; null for silence and for a laugh between phonemes */
-    const char *word;  /* of lab alone, else null */
-    uint32_t line;     /* on which it stands, from 1 */
-    int16_t laugh;     /* the intensity of a laugh, 0 .. LABIAL_LAUGH_FULL (labial/laugh.h); -1 when it is none */
-    uint8_t has_apex;  /* 1 where `apex` was given */
-    uint8_t xsampa;    /* 1 where labels are X-SAMPA by the format */
-} labial_timing_t;
-
 /* A parser; its members are private. Its structure may be moved or copied between calls. */
 typedef struct labial_timings labial_timings_t;
 
-/* The name of a format, what there is to say of it in a line, and how the names of its files end, in lower case, where
- * that tells it; null beyond the last. */
-const char *labial_timings_format_name(unsigned format);
-const char *labial_timings_format_help(unsigned format);
-const char *labial_timings_format_suffix(unsigned format);
+/* A phoneme, a silence or a laugh in time, below. */
+typedef struct labial_timing labial_timing_t;
+
+/* ---- Calls ------------------------------------------------------------------------------------------------------- */
 
 /* Prepares a parser. Returns LABIAL_OK, LABIAL_ERROR_NULL, or LABIAL_ERROR_RANGE for a format that is none, with a
  * parser for LABIAL_TIMINGS_AUTO. */
@@ -127,6 +102,38 @@ uint32_t labial_timings_line(const labial_timings_t *timings);
 
 /* What is wrong, one line that is valid until the parser is prepared anew; "" before an error. */
 const char *labial_timings_message(const labial_timings_t *timings);
+
+/* The name of a format, what there is to say of it in a line, and how the names of its files end, in lower case, where
+ * that tells it; null beyond the last. */
+const char *labial_timings_format_name(unsigned format);
+const char *labial_timings_format_help(unsigned format);
+const char *labial_timings_format_suffix(unsigned format);
+
+/* ---- Timings ----------------------------------------------------------------------------------------------------- */
+
+/* Longest field (label with context, number or word) and longest label, in bytes. */
+#define LABIAL_TIMINGS_FIELD_MAX 511
+#define LABIAL_TIMINGS_LABEL_MAX 63
+
+/* Latest time that is believed: 1,000,000 seconds, in nanoseconds. */
+#define LABIAL_TIMINGS_TIME_MAX 1000000000000000u
+
+/* Overlaps and gaps up to this many nanoseconds come from rounding. */
+#define LABIAL_TIMINGS_TOLERANCE 1000000u
+
+/* A phoneme, a silence or a laugh in time. Texts end with NUL and are valid until the parser's next call. */
+struct labial_timing {
+    uint64_t start,
+        end;           /* nanoseconds from the text's beginning; a start may be before the end of the one before it, by
+                            LABIAL_TIMINGS_TOLERANCE at most, and every end is at the start or behind it */
+    uint64_t apex;     /* when the sound is loudest, within start and end but for the tolerance; of lab alone */
+    const char *label; /* as written; null for silence and for a laugh between phonemes */
+    const char *word;  /* of lab alone, else null */
+    uint32_t line;     /* on which it stands, from 1 */
+    int16_t laugh;     /* the intensity of a laugh, 0 .. LABIAL_LAUGH_FULL (labial/laugh.h); -1 when it is none */
+    uint8_t has_apex;  /* 1 where `apex` was given */
+    uint8_t xsampa;    /* 1 where labels are X-SAMPA by the format */
+};
 
 /* ---- Private ----------------------------------------------------------------------------------------------------- */
 

@@ -64,10 +64,6 @@ enum {
 #define LABIAL_ARPABET_PHONEMES 40
 extern const uint8_t labial_arpabet_visemes[LABIAL_ARPABET_PHONEMES];
 
-/* Lip classes of the models of hearing that Labial trains, and the viseme of each, for labial_hear_visemes(). */
-#define LABIAL_HEARD_CLASSES 26
-extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
-
 /*
  * The shares of the frame that the stream delivered last, in its callback or until the next tick. `visemes` has the
  * viseme of each phoneme of `model`; numbers that are none, and frames of other models, such as laughter, count as
@@ -81,6 +77,10 @@ extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
  */
 int labial_visemes(const labial_t *stream, const labial_model_t *model, const uint8_t *visemes,
                    uint8_t shares[LABIAL_VISEMES]);
+
+/* Lip classes of the models of hearing that Labial trains, and the viseme of each, for labial_hear_visemes(). */
+#define LABIAL_HEARD_CLASSES 26
+extern const uint8_t labial_heard_visemes[LABIAL_HEARD_CLASSES];
 
 /* FAPs of the tongue: 43 shift_tongue_tip and 45 thrust_tongue_tip in 1/1024 of the mouth's width, 44 raise_tongue_tip
  * and 46 raise_tongue in 1/1024 of the distance from mouth to nose, 47 tongue_roll in 1/100,000 radian. */

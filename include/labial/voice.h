@@ -19,20 +19,6 @@
  * changes the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been;
  * lips that are apart meet in time for a p, b or m.
  *
- * Utterances
- * - Times of items count from the beginning of their utterance. The first one begins with the sound; further ones begin
- *   with labial_voice_begin(), or by themselves where a message has another identity than those before it.
- * - An identity is what the service calls the utterance (a context, a generation), as labial_voice_identity() makes it
- *   of a text. Messages of an utterance that waits go to it, whatever came between. Messages of one that was cancelled
- *   or is over are dropped. An utterance without an identity takes that of the first message that has one.
- * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
- *   own sound is heard or labial_voice_begin() says when that is.
- * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
- *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first
- *   20 ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
- * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
- *   where the next one begins.
- *
  * Items that make no sense are skipped and counted: those that end before they begin, last more than an hour, begin or
  * end more than a day after their utterance's beginning, or name a phoneme or viseme that there is not.
  *
@@ -58,34 +44,16 @@
 extern "C" {
 #endif
 
-/* Utterances that may be known at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 76 bytes. */
-#ifndef LABIAL_VOICE_UTTERANCES
-#define LABIAL_VOICE_UTTERANCES 8
-#endif
-#if LABIAL_VOICE_UTTERANCES < 2 || LABIAL_VOICE_UTTERANCES > 255
-#error "LABIAL_VOICE_UTTERANCES must be a number from 2 to 255."
-#endif
-
 /* Frames over which a changed motion fades in. */
 #define LABIAL_VOICE_FADE 8u
 
 /* Milliseconds from the end of the last item until the face is at rest. */
 #define LABIAL_VOICE_REST 500u
 
-/* Bytes of an item's text that are kept; the rest is passed over. */
-#define LABIAL_VOICE_TEXT 255u
-
-/* Characters of the longest word that characters make; what follows is another word. */
-#define LABIAL_VOICE_LETTERS 60u
-
-/* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
-#define LABIAL_VOICE_NO_END UINT64_MAX
-
-/* The same in milliseconds, for labial_voice_word(). */
+/* For labial_voice_word(), where the end is not known. */
 #define LABIAL_VOICE_OPEN 0xffffffffu
 
-/* The latest time of an item in its utterance, and of the clock, milliseconds: a day, and a year. */
-#define LABIAL_VOICE_LATEST 86400000u
+/* The latest time of the clock, milliseconds: a year. */
 #define LABIAL_VOICE_CLOCK UINT64_C(32000000000)
 
 /* For labial_voice_begin(): where the utterance before ends. */
@@ -99,54 +67,10 @@ extern "C" {
  */
 #define LABIAL_VOICE_SIZE(stride, channels, places) (LABIAL_WORKSPACE_SIZE(stride, channels) + 16u * (uint32_t)(places))
 
-/* Kinds of items. Of those that an utterance has, the first of this list counts. */
-typedef enum {
-    LABIAL_VOICE_PHONEMES,
-    LABIAL_VOICE_AZURE,     /* visemes by their names: Azure's, "0" to "21"; each lasts until the next */
-    LABIAL_VOICE_POLLY,     /* and Amazon Polly's, such as "p" or "sil" */
-    LABIAL_VOICE_WORDS,     /* as they are written, with their punctuation */
-    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over. Words end at blanks; those of scripts
-                             * without blanks at their punctuation, where a word of Japanese or a syllable of Thai
-                             * probably begins, and after four kana. */
-} labial_voice_kind_t;
-
-/* From when on the times of a message count. */
-typedef enum {
-    LABIAL_VOICE_ABSOLUTE, /* from the beginning of the utterance */
-    LABIAL_VOICE_CHAINED,  /* from the end of the message before */
-    LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
-                            * before: if it begins no later than the joined one before it and at least half of its time,
-                            * more than 20 ms, was told. Of the last 16 messages none counts twice. */
-} labial_voice_times_t;
-
-/* An item of a message. */
-typedef struct {
-    uint64_t start, end; /* microseconds, so that rounding does not add up; `end` may be LABIAL_VOICE_NO_END */
-    const char *text;    /* UTF-8: a word, one or more characters, the name of a viseme; null for a phoneme */
-    uint16_t size;       /* bytes of the text */
-    uint8_t phoneme;     /* number of a phoneme in the model */
-} labial_voice_item_t;
-
-/* What a service tells in one piece. The structure and what it points to are needed during the call alone. */
-typedef struct {
-    const labial_voice_item_t *items;
-    uint32_t count;
-    uint32_t utterance; /* its identity; 0 for none: the latest utterance */
-    uint32_t key;       /* not 0: a later message of the utterance with this key, modulo 65,535, replaces it */
-    uint16_t gap;       /* milliseconds: a gap behind a phoneme that is no longer belongs to it, 1 at least */
-    uint8_t kind;       /* labial_voice_kind_t */
-    uint8_t times;      /* labial_voice_times_t */
-} labial_voice_message_t;
-
-/* What a voice has been told. */
-typedef struct {
-    uint32_t told;    /* items taken */
-    uint32_t skipped; /* items that make no sense */
-    uint32_t dropped; /* messages of utterances that are over, and those that were told twice */
-} labial_voice_counts_t;
-
 /* A voice; the members are private. */
 typedef struct labial_voice labial_voice_t;
+
+/* ---- A voice that is followed ------------------------------------------------------------------------------------ */
 
 /*
  * Prepares a voice with frames of `model`. `memory`, aligned to four bytes, is the voice's from then on: `size` bytes,
@@ -163,41 +87,6 @@ int labial_voice_init(labial_voice_t *voice, const labial_model_t *model, void *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE or LABIAL_ERROR_VERSION.
  */
 int labial_voice_words(labial_voice_t *voice, const labial_words_model_t *model, const labial_words_own_t *own);
-
-/*
- * Says how a word is pronounced that is about to be read: the caller's own words for it, or null. They must stay where
- * they are until it is called again. It is called in labial_voice_next(), labial_voice_tell() and labial_voice_done(),
- * for the same word again and again, and must not call the voice.
- */
-typedef const labial_words_own_t *(*labial_voice_own_fn)(void *user, const char *text, size_t size);
-
-/* Asks `own` for each word, in place of the words of labial_voice_words(), as for languages that the library does not
- * read; null for those again. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
-int labial_voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own, void *user);
-
-/*
- * The model's number of each of the 40 phonemes of labial/words.h, silence first: of a model that numbers them
- * otherwise than the bundled ones. The numbers must stay where they are; null for the bundled ones' order.
- *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE or LABIAL_ERROR_PHONEME.
- */
-int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[LABIAL_ARPABET_PHONEMES]);
-
-/* Adds so many milliseconds to all times: with a service that reports them too early, a positive number.
- * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, or LABIAL_ERROR_RANGE beyond a day. */
-int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds);
-
-/* The identity of a text of `size` bytes, never 0: FNV-1a of 32 bits. */
-uint32_t labial_voice_identity(const char *text, size_t size);
-
-/*
- * Takes a message.
- *
- * Returns LABIAL_OK, also where nothing of it counts, LABIAL_CANCELLED where its utterance is over and it was dropped,
- * or with nothing changed LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised; words without labial_voice_words()),
- * LABIAL_ERROR_RANGE (kind or times) or LABIAL_ERROR_FULL (no place for all of its items, or for another utterance).
- */
-int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *message);
 
 /* A message of one word or phoneme of the latest utterance, in milliseconds; a word's end may be LABIAL_VOICE_OPEN.
  * Return as labial_voice_tell(); what makes no sense is skipped. */
@@ -263,8 +152,128 @@ int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISE
  * for a null or uninitialised voice. */
 int labial_voice_done(labial_voice_t *voice);
 
+/* What a voice has been told. */
+typedef struct {
+    uint32_t told;    /* items taken */
+    uint32_t skipped; /* items that make no sense */
+    uint32_t dropped; /* messages of utterances that are over, and those that were told twice */
+} labial_voice_counts_t;
+
 /* What it was told so far; all zero for a null or uninitialised voice. */
 labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice);
+
+/* ---- Utterances and messages ------------------------------------------------------------------------------------- */
+
+/* Utterances that may be known at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 76 bytes. */
+#ifndef LABIAL_VOICE_UTTERANCES
+#define LABIAL_VOICE_UTTERANCES 8
+#endif
+#if LABIAL_VOICE_UTTERANCES < 2 || LABIAL_VOICE_UTTERANCES > 255
+#error "LABIAL_VOICE_UTTERANCES must be a number from 2 to 255."
+#endif
+
+/* The latest time of an item in its utterance, milliseconds: a day. */
+#define LABIAL_VOICE_LATEST 86400000u
+
+/*
+ * - Times of items count from the beginning of their utterance. The first one begins with the sound; further ones begin
+ *   with labial_voice_begin(), or by themselves where a message has another identity than those before it.
+ * - An identity is what the service calls the utterance (a context, a generation), as labial_voice_identity() makes it
+ *   of a text. Messages of an utterance that waits go to it, whatever came between. Messages of one that was cancelled
+ *   or is over are dropped. An utterance without an identity takes that of the first message that has one.
+ * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
+ *   own sound is heard or labial_voice_begin() says when that is.
+ * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
+ *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first
+ *   20 ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
+ * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
+ *   where the next one begins.
+ */
+
+/* Bytes of an item's text that are kept; the rest is passed over. */
+#define LABIAL_VOICE_TEXT 255u
+
+/* Characters of the longest word that characters make; what follows is another word. */
+#define LABIAL_VOICE_LETTERS 60u
+
+/* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
+#define LABIAL_VOICE_NO_END UINT64_MAX
+
+/* Kinds of items. Of those that an utterance has, the first of this list counts. */
+typedef enum {
+    LABIAL_VOICE_PHONEMES,
+    LABIAL_VOICE_AZURE,     /* visemes by their names: Azure's, "0" to "21"; each lasts until the next */
+    LABIAL_VOICE_POLLY,     /* and Amazon Polly's, such as "p" or "sil" */
+    LABIAL_VOICE_WORDS,     /* as they are written, with their punctuation */
+    LABIAL_VOICE_CHARACTERS /* of a text; [tags] and <tags> are passed over. Words end at blanks; those of scripts
+                             * without blanks at their punctuation, where a word of Japanese or a syllable of Thai
+                             * probably begins, and after four kana. */
+} labial_voice_kind_t;
+
+/* From when on the times of a message count. */
+typedef enum {
+    LABIAL_VOICE_ABSOLUTE, /* from the beginning of the utterance */
+    LABIAL_VOICE_CHAINED,  /* from the end of the message before */
+    LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
+                            * before: if it begins no later than the joined one before it and at least half of its time,
+                            * more than 20 ms, was told. Of the last 16 messages none counts twice. */
+} labial_voice_times_t;
+
+/* An item of a message. */
+typedef struct {
+    uint64_t start, end; /* microseconds, so that rounding does not add up; `end` may be LABIAL_VOICE_NO_END */
+    const char *text;    /* UTF-8: a word, one or more characters, the name of a viseme; null for a phoneme */
+    uint16_t size;       /* bytes of the text */
+    uint8_t phoneme;     /* number of a phoneme in the model */
+} labial_voice_item_t;
+
+/* What a service tells in one piece. The structure and what it points to are needed during the call alone. */
+typedef struct {
+    const labial_voice_item_t *items;
+    uint32_t count;
+    uint32_t utterance; /* its identity; 0 for none: the latest utterance */
+    uint32_t key;       /* not 0: a later message of the utterance with this key, modulo 65,535, replaces it */
+    uint16_t gap;       /* milliseconds: a gap behind a phoneme that is no longer belongs to it, 1 at least */
+    uint8_t kind;       /* labial_voice_kind_t */
+    uint8_t times;      /* labial_voice_times_t */
+} labial_voice_message_t;
+
+/* The identity of a text of `size` bytes, never 0: FNV-1a of 32 bits. */
+uint32_t labial_voice_identity(const char *text, size_t size);
+
+/*
+ * Takes a message.
+ *
+ * Returns LABIAL_OK, also where nothing of it counts, LABIAL_CANCELLED where its utterance is over and it was dropped,
+ * or with nothing changed LABIAL_ERROR_NULL, LABIAL_ERROR_STATE (not initialised; words without labial_voice_words()),
+ * LABIAL_ERROR_RANGE (kind or times) or LABIAL_ERROR_FULL (no place for all of its items, or for another utterance).
+ */
+int labial_voice_tell(labial_voice_t *voice, const labial_voice_message_t *message);
+
+/* ---- Pronunciation and times ------------------------------------------------------------------------------------- */
+
+/*
+ * Says how a word is pronounced that is about to be read: the caller's own words for it, or null. They must stay where
+ * they are until it is called again. It is called in labial_voice_next(), labial_voice_tell() and labial_voice_done(),
+ * for the same word again and again, and must not call the voice.
+ */
+typedef const labial_words_own_t *(*labial_voice_own_fn)(void *user, const char *text, size_t size);
+
+/* Asks `own` for each word, in place of the words of labial_voice_words(), as for languages that the library does not
+ * read; null for those again. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
+int labial_voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own, void *user);
+
+/*
+ * The model's number of each of the 40 phonemes of labial/words.h, silence first: of a model that numbers them
+ * otherwise than the bundled ones. The numbers must stay where they are; null for the bundled ones' order.
+ *
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE or LABIAL_ERROR_PHONEME.
+ */
+int labial_voice_numbers(labial_voice_t *voice, const uint8_t numbers[LABIAL_ARPABET_PHONEMES]);
+
+/* Adds so many milliseconds to all times: with a service that reports them too early, a positive number.
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_STATE, or LABIAL_ERROR_RANGE beyond a day. */
+int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds);
 
 /* ---- Private ----------------------------------------------------------------------------------------------------- */
 

@@ -40,16 +40,6 @@
 extern "C" {
 #endif
 
-/* Format of a model; a file of another format does not compile. */
-#define LABIAL_WORDS_FORMAT 2
-
-/* Letters that are read together; longer words are read in parts. */
-#define LABIAL_WORDS_LETTERS 32
-
-/* Characters of a text that are read, and the phonemes that they become at most; what follows is passed over. */
-#define LABIAL_WORDS_CHARACTERS 255
-#define LABIAL_WORDS_PHONEMES 96
-
 /* A gap between two words that is shorter, in milliseconds, belongs to the first one; behind a comma or other punctuation,
  * where voices pause, less is a pause. */
 #define LABIAL_WORDS_PAUSE 150u
@@ -58,110 +48,14 @@ extern "C" {
 /* The end of a word whose end is not known: the next word's beginning, or what such a word usually lasts. */
 #define LABIAL_WORDS_NO_END 0xffffffffu
 
-/* How words of a language sound, as `labial export` writes it. Places and numbers are checked there.
- *
- * A node of a tree has two bytes, the higher first: question << 7 | kind << 5 | five. Of kind 0, both answers lead to a
- * leaf: `five` for yes, the next byte for no. Of kind 1, yes leads to the leaf `five`, and the node for no follows; of
- * kind 2, no leads to it and the node for yes follows. Of kind 3, `five` and the next byte are the length of the part
- * for yes, which follows, and behind it that for no. A leaf is a place in its letter's part of `leaves`. The questions
- * are those of export/labial/words/trees.py.
- *
- * An exception has the second and third byte of its word's hash, and then two bytes for each label to be changed, the
- * higher first: last << 15 | label << 5 | letter. The first byte of the hash is its bucket. */
-typedef struct {
-    uint16_t format;         /* LABIAL_WORDS_FORMAT */
-    uint8_t phoneme_count;   /* silence included */
-    uint32_t multiplier;     /* of the hash */
-    const uint16_t *roots;   /* 27 places in `trees` */
-    const uint16_t *bases;   /* 27 places in `leaves` */
-    const uint8_t *leaves;   /* labels of each letter */
-    const uint8_t *labels;   /* two bytes each: phonemes, 0 for none; the second has 0x80 where it ends in a vowel */
-    const uint8_t *trees;    /* nodes */
-    const uint16_t *buckets; /* 257 places in `patches` */
-    const uint8_t *patches;  /* exceptions */
-    const char *phonemes;    /* their labels, each ending with NUL */
-    const uint8_t *milliseconds; /* their mean durations */
-    const uint8_t *classes;      /* 1 for vowels, 2 for voiceless consonants, 0 for others */
-    uint8_t filler[2];           /* phonemes that alternate in unknown words */
-} labial_words_model_t;
-
-/* A word of the caller's own and its phonemes; numbers beyond the model's count as silence. The word is compared with
- * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
- * being the same. */
-typedef struct {
-    const char *word;        /* UTF-8, ends with NUL */
-    const uint8_t *phonemes; /* in their order */
-    uint8_t count;
-} labial_words_entry_t;
-
-/* The caller's own words; they come before all rules. */
-typedef struct {
-    const labial_words_entry_t *entries;
-    uint16_t count;
-} labial_words_own_t;
-
-typedef enum {
-    LABIAL_WORDS_SILENT, /* nothing to be said */
-    LABIAL_WORDS_READ,
-    LABIAL_WORDS_UNKNOWN /* letters of other scripts alone: no phonemes */
-} labial_words_kind_t;
-
-/* A phoneme of a word. */
-typedef struct {
-    uint8_t phoneme;
-    uint8_t character; /* of the text, from 0, that it belongs to */
-    uint8_t first;     /* 1 where a spoken word begins: "21" is two */
-} labial_words_phoneme_t;
-
-/* What a text sounds like. */
-typedef struct {
-    uint8_t kind;       /* labial_words_kind_t */
-    uint8_t count;      /* of `phonemes` */
-    uint8_t characters; /* of the text, LABIAL_WORDS_CHARACTERS at most */
-    labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
-} labial_word_t;
-
-/* What the words so far mean for the next one: all zero at the beginning of a text. The other members are private. */
-typedef struct {
-    /* Phonemes at the end of the word before that are not said there: those of "dollars" in "$5 million", which
-     * labial_words_read_next() found only when it read "million"; all of "5" before "March", which makes it "fifth". */
-    uint8_t dropped;
-    uint8_t after;    /* what was said last */
-    uint8_t currency; /* of a sum; or the number that a month may follow, or the unit that a smaller one may follow */
-    uint8_t tail;     /* phonemes that the next word may drop */
-    uint8_t shouting; /* the word before is in capitals and not spelt */
-    uint8_t named;    /* the word before may be the name of a street */
-    uint8_t closing;  /* what ends the tag or stage direction that the text is in */
-    uint8_t left;     /* words that it may still have */
-    uint8_t quoted;   /* a quotation has begun */
-} labial_words_context_t;
-
 /* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */
 typedef struct labial_words labial_words_t;
 
-/*
- * Reads a text of `size` bytes of UTF-8: one word or several. `own` may be null.
- *
- * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for a model of
- * another format.
- */
-int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
-                      labial_word_t *word);
+/* How words of a language sound, and the caller's own words; both below. */
+typedef struct labial_words_model labial_words_model_t;
+typedef struct labial_words_own labial_words_own_t;
 
-/*
- * The same for the next word of a text, or the next part of it: `context` goes from word to word. Where it says
- * `dropped` afterwards, remove so many phonemes from the end of the word before.
- *
- * Returns as labial_words_read().
- */
-int labial_words_read_next(const labial_words_model_t *model, const labial_words_own_t *own,
-                           labial_words_context_t *context, const char *text, size_t size, labial_word_t *word);
-
-/* The label of a phoneme in ARPABET, "" for numbers beyond the last and a null model. */
-const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme);
-
-/* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
-uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word);
+/* ---- Words in time ------------------------------------------------------------------------------------------------ */
 
 /*
  * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
@@ -238,6 +132,122 @@ int labial_words_restart(labial_words_t *stream);
 /* What was pushed and not yet taken: milliseconds and phonemes. `frames` are 0, and so is the delay: how long a word waits
  * depends on when the next one comes. All zero for a null or unprepared stream. */
 labial_latency_t labial_words_latency(const labial_words_t *stream);
+
+/* ---- Words without times ------------------------------------------------------------------------------------------ */
+
+/* Letters that are read together; longer words are read in parts. */
+#define LABIAL_WORDS_LETTERS 32
+
+/* Characters of a text that are read, and the phonemes that they become at most; what follows is passed over. */
+#define LABIAL_WORDS_CHARACTERS 255
+#define LABIAL_WORDS_PHONEMES 96
+
+typedef enum {
+    LABIAL_WORDS_SILENT, /* nothing to be said */
+    LABIAL_WORDS_READ,
+    LABIAL_WORDS_UNKNOWN /* letters of other scripts alone: no phonemes */
+} labial_words_kind_t;
+
+/* A phoneme of a word. */
+typedef struct {
+    uint8_t phoneme;
+    uint8_t character; /* of the text, from 0, that it belongs to */
+    uint8_t first;     /* 1 where a spoken word begins: "21" is two */
+} labial_words_phoneme_t;
+
+/* What a text sounds like. */
+typedef struct {
+    uint8_t kind;       /* labial_words_kind_t */
+    uint8_t count;      /* of `phonemes` */
+    uint8_t characters; /* of the text, LABIAL_WORDS_CHARACTERS at most */
+    labial_words_phoneme_t phonemes[LABIAL_WORDS_PHONEMES];
+} labial_word_t;
+
+/* What the words so far mean for the next one: all zero at the beginning of a text. The other members are private. */
+typedef struct {
+    /* Phonemes at the end of the word before that are not said there: those of "dollars" in "$5 million", which
+     * labial_words_read_next() found only when it read "million"; all of "5" before "March", which makes it "fifth". */
+    uint8_t dropped;
+    uint8_t after;    /* what was said last */
+    uint8_t currency; /* of a sum; or the number that a month may follow, or the unit that a smaller one may follow */
+    uint8_t tail;     /* phonemes that the next word may drop */
+    uint8_t shouting; /* the word before is in capitals and not spelt */
+    uint8_t named;    /* the word before may be the name of a street */
+    uint8_t closing;  /* what ends the tag or stage direction that the text is in */
+    uint8_t left;     /* words that it may still have */
+    uint8_t quoted;   /* a quotation has begun */
+} labial_words_context_t;
+
+/*
+ * Reads a text of `size` bytes of UTF-8: one word or several. `own` may be null.
+ *
+ * Returns LABIAL_OK with `word` filled, whatever the text; LABIAL_ERROR_NULL, or LABIAL_ERROR_VERSION for a model of
+ * another format.
+ */
+int labial_words_read(const labial_words_model_t *model, const labial_words_own_t *own, const char *text, size_t size,
+                      labial_word_t *word);
+
+/*
+ * The same for the next word of a text, or the next part of it: `context` goes from word to word. Where it says
+ * `dropped` afterwards, remove so many phonemes from the end of the word before.
+ *
+ * Returns as labial_words_read().
+ */
+int labial_words_read_next(const labial_words_model_t *model, const labial_words_own_t *own,
+                           labial_words_context_t *context, const char *text, size_t size, labial_word_t *word);
+
+/* The label of a phoneme in ARPABET, "" for numbers beyond the last and a null model. */
+const char *labial_words_label(const labial_words_model_t *model, unsigned phoneme);
+
+/* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
+uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word);
+
+/* ---- Tables ------------------------------------------------------------------------------------------------------- */
+
+/* A word of the caller's own and its phonemes; numbers beyond the model's count as silence. The word is compared with
+ * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
+ * being the same. */
+typedef struct {
+    const char *word;        /* UTF-8, ends with NUL */
+    const uint8_t *phonemes; /* in their order */
+    uint8_t count;
+} labial_words_entry_t;
+
+/* The caller's own words; they come before all rules. */
+struct labial_words_own {
+    const labial_words_entry_t *entries;
+    uint16_t count;
+};
+
+/* Format of a model; a file of another format does not compile. */
+#define LABIAL_WORDS_FORMAT 2
+
+/* How words of a language sound, as `labial export` writes it. Places and numbers are checked there.
+ *
+ * A node of a tree has two bytes, the higher first: question << 7 | kind << 5 | five. Of kind 0, both answers lead to a
+ * leaf: `five` for yes, the next byte for no. Of kind 1, yes leads to the leaf `five`, and the node for no follows; of
+ * kind 2, no leads to it and the node for yes follows. Of kind 3, `five` and the next byte are the length of the part
+ * for yes, which follows, and behind it that for no. A leaf is a place in its letter's part of `leaves`. The questions
+ * are those of export/labial/words/trees.py.
+ *
+ * An exception has the second and third byte of its word's hash, and then two bytes for each label to be changed, the
+ * higher first: last << 15 | label << 5 | letter. The first byte of the hash is its bucket. */
+struct labial_words_model {
+    uint16_t format;         /* LABIAL_WORDS_FORMAT */
+    uint8_t phoneme_count;   /* silence included */
+    uint32_t multiplier;     /* of the hash */
+    const uint16_t *roots;   /* 27 places in `trees` */
+    const uint16_t *bases;   /* 27 places in `leaves` */
+    const uint8_t *leaves;   /* labels of each letter */
+    const uint8_t *labels;   /* two bytes each: phonemes, 0 for none; the second has 0x80 where it ends in a vowel */
+    const uint8_t *trees;    /* nodes */
+    const uint16_t *buckets; /* 257 places in `patches` */
+    const uint8_t *patches;  /* exceptions */
+    const char *phonemes;    /* their labels, each ending with NUL */
+    const uint8_t *milliseconds; /* their mean durations */
+    const uint8_t *classes;      /* 1 for vowels, 2 for voiceless consonants, 0 for others */
+    uint8_t filler[2];           /* phonemes that alternate in unknown words */
+};
 
 /* ---- Private ------------------------------------------------------------------------------------------------------ */
 
