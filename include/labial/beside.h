@@ -57,7 +57,7 @@ typedef struct labial_beside labial_beside_t;
 /*
  * Prepares a player for packets of `outputs` values, 1 .. 255, beside sound of 1 .. 50,000,000 `samples_per_second`.
  * `memory` of `size` bytes belongs to the player from now on. It keeps as many frames as fit, the largest power of two
- * up to LABIAL_BESIDE_FRAMES_MAX. Where the outputs stand is not known: the first packet puts them at rest,
+ * up to LABIAL_BESIDE_FRAMES_MAX. It does not know where the outputs stand: the first packet puts them at rest,
  * without a limit. Outputs have no limits until labial_beside_limit().
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL, LABIAL_ERROR_RANGE (outputs), LABIAL_ERROR_SAMPLE_RATE, or
@@ -97,7 +97,7 @@ int labial_beside_push(labial_beside_t *player, const void *packet, size_t size)
 /*
  * The values to show while sample number `sample` is heard, modulo 2^32. Call it every 20 ms, also in silence with a
  * number that stands still: as it eases by a step in each call, it needs no other clock. Numbers may skip any distance;
- * one that is less than the ring's length below the last is taken for jitter, one further below starts over from there.
+ * one that is less than the ring's length below the last is jitter, one further below starts over from there.
  *
  * Returns with the values of all outputs, 0 .. 255, in `values` LABIAL_OK when they are those of a frame or on the way
  * there, and LABIAL_STARVED when there is none and the face goes to rest or is there; or with nothing written
@@ -160,10 +160,10 @@ struct labial_beside {
     uint16_t session; /* of the latest packet */
     uint32_t samples_per_second;
     uint32_t now;    /* the frame that is heard, or that comes next after a cancel: the first one of the ring */
-    uint32_t sample; /* a sample at most a second before the last one that was told, */
+    uint32_t sample; /* a sample at most a second before the last one of labial_beside_tick(), */
     uint32_t frame;  /* and the frame that begins with it */
     uint8_t
-        *memory; /* the caller's: the face at rest, as it is shown, the frame that it approaches, limits, the ring */
+        *memory; /* the caller's: the face at rest, its present pose, the frame that it approaches, limits, the ring */
 };
 
 #ifdef __cplusplus

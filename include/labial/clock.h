@@ -37,10 +37,10 @@ extern "C" {
 /* The number of a sound whose samples have none, such as a sound of the device's own. */
 #define LABIAL_CLOCK_NONE INT64_C(-1)
 
-/* Numbers and times, in microseconds, are below this; others are taken for it. */
+/* Numbers and times, in microseconds, are below this; larger ones count as it. */
 #define LABIAL_CLOCK_MAX (INT64_C(1) << 60)
 
-/* The longest sound that waits to be heard, microseconds: a day. Of more, the beginning is taken for heard. */
+/* The longest sound that waits to be heard, microseconds: a day. Of more, the beginning counts as heard. */
 #define LABIAL_CLOCK_AHEAD INT64_C(86400000000)
 
 /* A clock; its members are private. All zero it is one that was not initialised. */

@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 /* 1 builds the published method to the letter (docs/method.md): each unit is searched and solved as a whole when its
- * last frame is known, and cross-faded with the next. LABIAL_WINDOW, LABIAL_LAG and LABIAL_SEARCHED have no effect
+ * last frame has come, and cross-faded with the next. LABIAL_WINDOW, LABIAL_LAG and LABIAL_SEARCHED have no effect
  * then. */
 #ifndef LABIAL_PAPER
 #define LABIAL_PAPER 0
@@ -56,7 +56,7 @@
 #endif
 
 /* Which calls on a stream take the lock that the program provides as labial_lock() and labial_unlock() (labial.h):
- * 0: none, no two calls overlap; 1: all but labial_tick(), which interrupts the others and is held off by the lock; 2:
+ * 0: none, no two calls overlap; 1: all but labial_tick(), which interrupts the others and which the lock holds off; 2:
  * all calls, from any tasks or threads. */
 #ifndef LABIAL_LOCKS
 #define LABIAL_LOCKS 0

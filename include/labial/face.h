@@ -66,9 +66,9 @@ typedef struct labial_face labial_face_t;
 
 /*
  * Prepares a face at rest. `frames_per_second` is that of the source, 1 .. 1000: for labial_face_due() alone. `ahead`
- * is how many frames after a frame are known when it is shown, 0 .. LABIAL_FACE_AHEAD_MAX: slow servos need it to close
- * in time (labial_rig_apply_ahead()), and so does a source that delivers several frames at a time. The face is late by
- * as many, and the sound must be delayed.
+ * is how many later frames the face waits for before it shows one, 0 .. LABIAL_FACE_AHEAD_MAX: slow servos need it to
+ * close in time (labial_rig_apply_ahead()), and so does a source that delivers several frames at a time. The face is
+ * late by as many, and the sound must be delayed.
  *
  * `memory` of `size` bytes, at least LABIAL_FACE_SIZE(outputs, ahead), belongs to the face from now on, and the rig
  * must stay where it is.
@@ -82,14 +82,14 @@ int labial_face_init(labial_face_t *face, const labial_rig_t *rig, unsigned fram
 /*
  * Takes a frame: the callback of a stream or of hearing, with the face as its `user`. The frame's number does not
  * matter. Frames wait for their ticks, one each; of more than `ahead` + 1 the oldest are passed over, so that the face
- * is never later than that. A face that is not initialised takes none. Sounds are not known here: outputs with
- * `visemes` need labial_face_visemes().
+ * is never later than that. A face that is not initialised takes none. Outputs with `visemes` need
+ * labial_face_visemes(), which takes sounds, too.
  */
 void labial_face_frame(void *face, uint32_t frame, const int16_t faps[LABIAL_CHANNELS]);
 
 /*
- * The same for a frame of which it is known what sounds it shows, so that outputs with `visemes` follow them: `shares`
- * are LABIAL_VISEMES of them, as labial_visemes() gives them; NULL where they are not known. For a callback of the
+ * The same for a frame with the sounds that it shows, which outputs with `visemes` follow: `shares` are LABIAL_VISEMES
+ * of them, as labial_visemes() gives them, or NULL for unknown sounds. For a callback of the
  * program's own:
  *
  *     static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
@@ -104,7 +104,7 @@ void labial_face_frame(void *face, uint32_t frame, const int16_t faps[LABIAL_CHA
 int labial_face_visemes(labial_face_t *face, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /*
- * Takes a frame whose outputs are known: `wanted` has a value for each, in the rig's units, as labial_beside_value()
+ * Takes a frame as values of the outputs: `wanted` has one for each, in the rig's units, as labial_beside_value()
  * and labial_player_value() compute them. They go through the same limits. Values beyond an output's limits count as
  * those.
  *
@@ -127,7 +127,7 @@ int labial_face_due(labial_face_t *face, uint32_t milliseconds);
  * Moves the outputs by one tick and writes the `values` of all of them.
  *
  * Without a frame they stay on the way to the last one for LABIAL_FACE_HOLD ticks and go to rest in the next
- * LABIAL_FACE_EASE. A frame that comes later waits until `ahead` more are known, or as many ticks have passed.
+ * LABIAL_FACE_EASE. A frame that comes later waits until `ahead` more have come, or as many ticks have passed.
  *
  * Returns LABIAL_OK with the values of a frame; LABIAL_WAITING when frames wait for those that follow; LABIAL_STARVED
  * when there is none and the outputs hold or go to rest; LABIAL_DONE when there is none and all of them have come to
@@ -154,7 +154,7 @@ int labial_face_skip(labial_face_t *face, unsigned count);
 /*
  * Drops the frames that wait; the outputs go to rest over `milliseconds`, rounded up to whole frames, 1 ..
  * LABIAL_CANCEL_MAX, or longer where their limits need it. Call it with labial_cancel() where the sound stops at once.
- * The frames of a source that eases to rest itself are taken as any others.
+ * Frames of a source that eases to rest itself count like any others.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */

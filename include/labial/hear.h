@@ -144,7 +144,7 @@ int labial_hear_restart(labial_hear_t *hear);
  *
  * A sound begins at LABIAL_HEAR_LEVEL_BEGIN, or where labial_hear_set_level() sets it, and after labial_hear_restart()
  * at the level of the sound before. The face rests until a sound comes within 12 dB of that, or rises 9 dB above the
- * noise; then the level falls by 9 dB a second until the voice reaches it. Set the level where it is known, so that the
+ * noise; then the level falls by 9 dB a second until the voice reaches it. Set the level where you know it, so that the
  * first word is heard at it: for a file, hear it once from LABIAL_HEAR_LEVEL_MIN on, look at the level every 10 ms, and
  * take the largest.
  */

@@ -65,7 +65,7 @@ typedef struct {
     uint8_t units;   /* of every layer, a multiple of four */
     uint8_t blocks;  /* 1 and more */
     uint8_t classes; /* 2 and more */
-    uint8_t ahead;   /* frames that must follow a frame before it is known: the sum of ahead * dilation */
+    uint8_t ahead;   /* frames that a frame waits for: the sum of ahead * dilation */
     uint8_t rows;    /* of the workspace: the sum of (past + ahead) * dilation, and of ahead * dilation but the first */
     int32_t close_from;     /* score of closed lips at which they begin to close, Q9 */
     int32_t close_width;    /* how much more of it closes them, Q9, 1 .. 65536 */

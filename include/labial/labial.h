@@ -46,7 +46,7 @@ extern "C" {
 /* Longest duration of one phoneme, milliseconds: one hour. */
 #define LABIAL_DURATION_MAX 3600000u
 
-/* Frames in which the face comes to rest, and ticks for which it is held before that while phonemes are late. */
+/* Frames in which the face comes to rest, and ticks for which it keeps its pose before that while phonemes are late. */
 #define LABIAL_EASE_FRAMES 12u
 #define LABIAL_HOLD_TICKS 5u
 
@@ -166,7 +166,7 @@ int labial_end(labial_t *stream);
  * LABIAL_DELAY(stride) ticks before; every call does about the same work. When phonemes come too late, the stream is
  * late by one frame for each tick that returned LABIAL_STARVED, and catches up by as many extra calls (docs/kiosk.md).
  *
- * A face that is not at rest when a frame is missing is held for LABIAL_HOLD_TICKS ticks, counted from the last frame
+ * A face that is not at rest when a frame is missing keeps its pose for LABIAL_HOLD_TICKS ticks from the last frame
  * or push; then it comes to rest in LABIAL_EASE_FRAMES ticks, each of which calls the callback. The next frames lead
  * from there to the motion as at the beginning.
  *

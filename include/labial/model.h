@@ -53,8 +53,8 @@ extern "C" {
 #define LABIAL_POSITION_MAX 16383                            /* Q4: +-1023.9 FAP units around the channel's centre */
 
 /* A phoneme is in contact in the middle half of its frames, in LABIAL_CONTACT_FRAMES of them at least, and in all but
- * LABIAL_CONTACT_OPEN of them, as a hum is. A shorter one borrows the frame before it and, if it has only one frame, the
- * frame after it as well. */
+ * LABIAL_CONTACT_OPEN of them, as a hum is. A shorter one borrows the frame before it and, if it has only one frame,
+ * the frame after it as well. */
 #define LABIAL_CONTACT_FRAMES 3
 #define LABIAL_CONTACT_OPEN 7
 

@@ -46,7 +46,7 @@ typedef struct {
  * %), and a glottal stop; the IPA's signs of length and secondary articulation, its ties and diacritics; Praat's
  * backslash sequences for these; X-SAMPA's marks (`:`, `=`, `~`, `;`, `_h`), Kaldi's places (`_B`) and the signs of
  * eSpeak's variants (`-`, `.`, `^`, `"`) after it; an ARPABET stress digit after two letters. The labels of the model's
- * own phonemes are known in every set that does not use them for another sound.
+ * own phonemes stand in every set that does not use them for another sound.
  *
  * Returns the phoneme's number, LABIAL_ERROR_NULL, or LABIAL_ERROR_NAME: also for an empty name, for marks alone, and
  * for `labels` that is none of the above.

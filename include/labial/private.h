@@ -163,8 +163,8 @@ typedef struct {
 #define LABIAL_MAGIC_ 0x4c41424cu /* "LABL" */
 #define LABIAL_DELAY_WORDS_ (LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX) / 32 + 1)
 
-/* The stream's state (stream.c). Small members come first, where small instructions reach them, behind the models, whose
- * place an index alone tells. */
+/* The stream's state (stream.c). Small members come first, where small instructions reach them, behind the models,
+ * whose place an index alone tells. */
 typedef struct {
     const labial_model_t *models[LABIAL_MODELS];
     uint32_t magic;  /* set while the stream is initialised */
@@ -173,12 +173,12 @@ typedef struct {
     uint8_t begun;   /* a frame was delivered since the stream was initialised or restarted */
     uint8_t exact;   /* the face rests only after a cancel */
     uint8_t resting; /* the face is at rest or on its way there: motion fades in from it */
-    uint8_t held;    /* ticks without a frame since the last frame or push, up to as many as the face is held */
+    uint8_t held;    /* ticks without a frame since the last frame or push, up to LABIAL_HOLD_TICKS */
     labial_articulation_t articulation;
     labial_channels_t channels;
     uint32_t frame;   /* number of the next frame */
     uint32_t pending; /* frames pushed and not yet delivered */
-    /* Bit i is that of the frame that was taken i ticks ago; what was taken before a cancel moves beyond the delay before
+    /* Bit i is that of the frame accepted i ticks ago; those from before a cancel move beyond the delay before
      * a frame is due. */
     uint32_t begins[LABIAL_DELAY_WORDS_];  /* a solution begins with the frame */
     uint32_t touches[LABIAL_DELAY_WORDS_]; /* a channel is in contact */

@@ -46,7 +46,7 @@ const char *labial_result_text(int result);
 
 /* The longest way to rest of a cancel, in frames. In every module the milliseconds of a cancel are the time in which
  * the face comes to rest, rounded up to whole frames, one at least; what is longer than this counts as this. The time
- * counts from the latest cancel: call it once, not again and again for as long as a button is held. */
+ * counts from the latest cancel: call it once, not again and again while a button is down. */
 #define LABIAL_CANCEL_MAX 1000u
 
 #ifdef __cplusplus

@@ -88,7 +88,7 @@ int labial_rig_rest(const labial_rig_t *rig, int32_t *values);
 int labial_rig_apply(const labial_rig_t *rig, const int16_t faps[LABIAL_CHANNELS], int32_t *values);
 
 /*
- * The same for a frame of which it is known what sounds it shows: `shares` are LABIAL_VISEMES of them, as
+ * The same for a frame with the sounds that it shows: `shares` are LABIAL_VISEMES of them, as
  * labial_visemes() gives them; with NULL it is labial_rig_apply(). Outputs with `visemes` show more of a sound than the
  * FAPs of lips and jaw tell: a tongue, teeth, lips that are pressed. Limits and contact apply to the sum.
  *
@@ -118,7 +118,7 @@ int labial_rig_apply_ahead(const labial_rig_t *rig, const int16_t *frames, uint1
 
 /*
  * The same with the sounds of these frames: `shares` are LABIAL_VISEMES for each of them, as labial_visemes() gives
- * them, 0 for a frame whose sounds are not known; with NULL it is labial_rig_apply_ahead().
+ * them, 0 for a frame of unknown sounds; with NULL it is labial_rig_apply_ahead().
  *
  * Returns LABIAL_OK or LABIAL_ERROR_NULL, also for a count of 0.
  */

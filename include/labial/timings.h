@@ -43,7 +43,7 @@
 extern "C" {
 #endif
 
-/* The formats; AUTO is told from the first line that is no comment. Their names, in this order, are
+/* The formats; AUTO looks at the first line that is no comment. Their names, in this order, are
  * labial_timings_format_name()'s. */
 typedef enum {
     LABIAL_TIMINGS_AUTO,
@@ -77,9 +77,9 @@ int labial_timings_init(labial_timings_t *timings, labial_timings_format_t forma
 int labial_timings_tier(labial_timings_t *timings, const char *name, uint32_t number);
 
 /*
- * Takes bytes of the text, up to the one that completes a timing: of `size` bytes, `*used` were taken.
+ * Reads bytes of the text, up to the one that completes a timing: `*used` of the `size` bytes.
  *
- * Returns LABIAL_OK when `timing` holds one, LABIAL_WAITING when all bytes were taken and there is none, and
+ * Returns LABIAL_OK when `timing` holds one, LABIAL_WAITING when it has read all bytes and there is none, and
  * LABIAL_ERROR_TIMINGS, then and ever after, when the text is malformed; LABIAL_ERROR_NULL.
  */
 int labial_timings_next(labial_timings_t *timings, const char *text, size_t size, size_t *used,

@@ -16,7 +16,7 @@
  *         show(faps);
  *
  * Frame k is due when k / fps seconds of the sound were heard. What becomes known late, or otherwise than before,
- * changes the frames that were not taken yet: they fade over LABIAL_VOICE_FADE frames to what they would have been;
+ * changes the frames that are still to come: they fade over LABIAL_VOICE_FADE frames to what they would have been;
  * lips that are apart meet in time for a p, b or m.
  *
  * Items that make no sense are skipped and counted: those that end before they begin, last more than an hour, begin or
@@ -50,7 +50,7 @@ extern "C" {
 /* Milliseconds from the end of the last item until the face is at rest. */
 #define LABIAL_VOICE_REST 500u
 
-/* For labial_voice_word(), where the end is not known. */
+/* An unknown end, for labial_voice_word(). */
 #define LABIAL_VOICE_OPEN 0xffffffffu
 
 /* The latest time of the clock, milliseconds: a year. */
@@ -104,14 +104,14 @@ int labial_voice_phoneme(labial_voice_t *voice, unsigned phoneme, uint32_t start
  */
 int labial_voice_begin(labial_voice_t *voice, uint64_t at, uint32_t utterance);
 
-/* Nothing more follows (labial_voice_done()). What is told nevertheless, but to utterances whose identity is known,
- * begins the next utterance. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
+/* Nothing more follows (labial_voice_done()). A message that comes nevertheless begins the next utterance, unless it
+ * has the identity of a known one. Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE. */
 int labial_voice_finish(labial_voice_t *voice);
 
 /*
- * Drops all that is not shown yet, and eases to the neutral face over `milliseconds`, rounded up to whole frames, 1 ..
- * LABIAL_CANCEL_MAX. What is told until labial_voice_begin() is dropped, and so is all of the utterances whose
- * identities were known by then.
+ * Drops all frames that are still to come, and eases to the neutral face over `milliseconds`, rounded up to whole
+ * frames, 1 .. LABIAL_CANCEL_MAX. It drops messages until labial_voice_begin(), and afterwards those of the utterances
+ * whose identities it knew by then.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -131,7 +131,7 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
  * The next pose on the way to the neutral face, for a clock that stands with the sound: once in each frame's time in
  * which labial_voice_next() gives none. The way begins at once after labial_voice_cancel(); after labial_voice_finish()
  * where the clock stands at the end of what is known or up to 100 ms before it, once it stood for 80 ms. It is no
- * frame of the sound, so that what is told for the time at which the clock stands begins there.
+ * frame of the sound: an item for the time at which the clock stands begins there.
  *
  * Returns LABIAL_OK, LABIAL_WAITING until the clock stood for so long, LABIAL_DONE where there is no such way or at its
  * end, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
@@ -139,8 +139,8 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
 int labial_voice_ease(labial_voice_t *voice, int16_t faps[LABIAL_CHANNELS]);
 
 /*
- * The shares of the sounds (labial/visemes.h) in the frame that labial_voice_next() gave last. `shares` are those of the
- * frame before, all 0 at first: while a frame fades to what became known, or to rest, each changes by a quarter of
+ * The shares of the sounds (labial/visemes.h) in the frame that labial_voice_next() gave last. `shares` are those of
+ * the frame before, all 0 at first: while a frame fades to what became known, or to rest, each changes by a quarter of
  * LABIAL_VISEME_ONE at most, so that no tongue jumps. For models of the ARPABET; others are silent.
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
@@ -152,19 +152,19 @@ int labial_voice_visemes(const labial_voice_t *voice, uint8_t shares[LABIAL_VISE
  * for a null or uninitialised voice. */
 int labial_voice_done(labial_voice_t *voice);
 
-/* What a voice has been told. */
+/* What a voice has received. */
 typedef struct {
     uint32_t told;    /* items taken */
     uint32_t skipped; /* items that make no sense */
-    uint32_t dropped; /* messages of utterances that are over, and those that were told twice */
+    uint32_t dropped; /* messages of utterances that are over, and repeated ones */
 } labial_voice_counts_t;
 
-/* What it was told so far; all zero for a null or uninitialised voice. */
+/* What it has received so far; all zero for a null or uninitialised voice. */
 labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice);
 
 /* ---- Utterances and messages ------------------------------------------------------------------------------------- */
 
-/* Utterances that may be known at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 76 bytes. */
+/* Utterances at a time, 2 .. 255: the one that is heard, and those that wait. Each costs 76 bytes. */
 #ifndef LABIAL_VOICE_UTTERANCES
 #define LABIAL_VOICE_UTTERANCES 8
 #endif
@@ -183,11 +183,11 @@ labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice);
  *   or is over are dropped. An utterance without an identity takes that of the first message that has one.
  * - An utterance that begins by itself is queued: it begins where the one before it ends, as far as is known, until its
  *   own sound is heard or labial_voice_begin() says when that is.
- * - A message replaces what was told of its time: items that begin between the beginning of its first and the end of
- *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first
- *   20 ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
- * - Nothing known is silence; after all that is known, the face comes to rest (LABIAL_VOICE_REST). An utterance ends
- *   where the next one begins.
+ * - A message replaces earlier items of its time: those that begin between the beginning of its first and the end of
+ *   its last one, less 20 ms or half of that item, as ends are rounded; a blank character that ends within the first 20
+ *   ms stays. Of an utterance only the items of its first kind (labial_voice_kind_t) count.
+ * - Where there is no item there is silence; after the last item the face comes to rest (LABIAL_VOICE_REST). An
+ *   utterance ends where the next one begins.
  */
 
 /* Bytes of an item's text that are kept; the rest is passed over. */
@@ -196,7 +196,7 @@ labial_voice_counts_t labial_voice_counts(const labial_voice_t *voice);
 /* Characters of the longest word that characters make; what follows is another word. */
 #define LABIAL_VOICE_LETTERS 60u
 
-/* An end that is not known, in microseconds: a word lasts until the next one then, or as long as it usually does. */
+/* An unknown end, in microseconds: a word lasts until the next one then, or as long as it usually does. */
 #define LABIAL_VOICE_NO_END UINT64_MAX
 
 /* Kinds of items. Of those that an utterance has, the first of this list counts. */
@@ -216,7 +216,7 @@ typedef enum {
     LABIAL_VOICE_CHAINED,  /* from the end of the message before */
     LABIAL_VOICE_JOINED    /* from the beginning of the utterance or, if the message begins again, from the end of all
                             * before: if it begins no later than the joined one before it and at least half of its time,
-                            * more than 20 ms, was told. Of the last 16 messages none counts twice. */
+                            * more than 20 ms, has items. Of the last 16 messages none counts twice. */
 } labial_voice_times_t;
 
 /* An item of a message. */
@@ -280,7 +280,7 @@ int labial_voice_offset(labial_voice_t *voice, int32_t milliseconds);
 /* Segments that the stream was given last: all of three seconds, unless phonemes are shorter than 25 ms. */
 #define LABIAL_VOICE_GIVEN_ 128u
 
-/* Messages that are recognised when they are told twice. */
+/* Messages that are recognised when they come again. */
 #define LABIAL_VOICE_MESSAGES_ 16u
 
 /* An item, or the first 4 bytes of its text; the rest lies in the places behind it. */
@@ -302,7 +302,7 @@ struct labial_voice_utterance {
     uint32_t places;   /* that its items take */
     uint32_t end;      /* of its items, milliseconds from the origin */
     uint32_t over;     /* up to which items were forgotten */
-    uint32_t pause;    /* where the longest time before `over` begins of which nothing was told, */
+    uint32_t pause;    /* where the longest time without items before `over` begins, */
     uint32_t highest;  /* key */
     uint32_t serial;   /* its number */
     uint16_t paused;   /* and its milliseconds */
@@ -313,7 +313,7 @@ struct labial_voice_utterance {
     uint8_t joined;    /* its last message was */
 };
 
-/* A piece of what is known: a phoneme from `start` to `end`. */
+/* A phoneme from `start` to `end`. */
 struct labial_voice_segment {
     int64_t start, end; /* milliseconds; INT64_MAX without an end */
     uint8_t phoneme;
@@ -371,7 +371,7 @@ struct labial_voice {
     uint8_t given_first, given_count, message, over; /* places in rings */
     uint8_t utterance_count;
     uint8_t finished, cancelled;
-    uint8_t changed;   /* something was told since the last frame, */
+    uint8_t changed;   /* a message came since the last frame, */
     uint8_t stale;     /* of what the plan had looked at */
     uint8_t streaming; /* the stream makes the frames; else the face is neutral */
     uint8_t begun;     /* `shown` holds */

@@ -18,8 +18,8 @@
  * with other phonemes, look each label (labial_words_label()) up in its names once.
  *
  * The model is that of one language, and these rules are for English: other languages in Latin letters are read as if
- * they were English; where a voice reports phonemes or visemes, use these. The model is trusted, as those of motion are.
- * Texts, times and the order of calls are not trusted.
+ * they were English; where a voice reports phonemes or visemes, use these. The model is trusted, as those of motion
+ * are. Texts, times and the order of calls are not trusted.
  *
  * docs/words.md says what is read: letters, spelt words, numbers, dates, times, sums, units, addresses, abbreviations,
  * tags and stage directions. Letters of other scripts are unknown; bytes that are not UTF-8 are nothing.
@@ -40,12 +40,12 @@
 extern "C" {
 #endif
 
-/* A gap between two words that is shorter, in milliseconds, belongs to the first one; behind a comma or other punctuation,
- * where voices pause, less is a pause. */
+/* A gap between two words that is shorter, in milliseconds, belongs to the first one; behind a comma or other
+ * punctuation, where voices pause, less is a pause. */
 #define LABIAL_WORDS_PAUSE 150u
 #define LABIAL_WORDS_COMMA 80u
 
-/* The end of a word whose end is not known: the next word's beginning, or what such a word usually lasts. */
+/* An unknown end of a word: it lasts until the next word begins, or as long as such a word usually does. */
 #define LABIAL_WORDS_NO_END 0xffffffffu
 
 /* Words in time on their way to phonemes; the members are private. It may be moved or copied between calls. */
@@ -55,7 +55,7 @@ typedef struct labial_words labial_words_t;
 typedef struct labial_words_model labial_words_model_t;
 typedef struct labial_words_own labial_words_own_t;
 
-/* ---- Words in time ------------------------------------------------------------------------------------------------ */
+/* ---- Words in time ----------------------------------------------------------------------------------------------- */
 
 /*
  * Prepares a stream. `offset` milliseconds are added to all times: with a voice that reports its words too early, a
@@ -73,21 +73,21 @@ int labial_words_pronounce(labial_words_t *stream, const labial_words_own_t *own
 
 /*
  * Takes a word from `start` to `end`, milliseconds from the beginning of the sound; `end` may be LABIAL_WORDS_NO_END. A
- * word that ends where it begins, as of services that tell beginnings alone, has no known end either.
- * How a word ends depends on what follows, so that each word's phonemes come with the next word or with
- * labial_words_end(). A gap under LABIAL_WORDS_PAUSE, or under LABIAL_WORDS_COMMA behind punctuation, belongs to the word
- * before it, a longer one is silence. A word that ends after the next one begins is cut off there. A text that is silent
- * leaves its time to what is beside it.
+ * word that ends where it begins, as of services that tell beginnings alone, has no known end either. How a word ends
+ * depends on what follows, so that each word's phonemes come with the next word or with labial_words_end(). A gap under
+ * LABIAL_WORDS_PAUSE, or under LABIAL_WORDS_COMMA behind punctuation, belongs to the word before it, a longer one is
+ * silence. A word that ends after the next one begins is cut off there. A text that is silent leaves its time to what
+ * is beside it.
  *
  * Take all that labial_words_next() has first. Returns LABIAL_OK or, with the stream unchanged, LABIAL_ERROR_NULL,
- * LABIAL_ERROR_STATE (not prepared, or after labial_words_end()), LABIAL_ERROR_FULL (there are phonemes to be taken), LABIAL_ERROR_WORD (`end`
- * before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer than
- * LABIAL_DURATION_MAX).
+ * LABIAL_ERROR_STATE (not prepared, or after labial_words_end()), LABIAL_ERROR_FULL (labial_words_next() has more),
+ * LABIAL_ERROR_WORD (`end` before `start`, or `start` before that of an earlier word) or LABIAL_ERROR_DURATION (longer
+ * than LABIAL_DURATION_MAX).
  */
 int labial_words_push(labial_words_t *stream, const char *text, size_t size, uint32_t start, uint32_t end);
 
 /*
- * The same where the end of each of the text's `count` characters (code points) is known; the first one begins at
+ * The same with the ends of the text's `count` characters (code points); the first one begins at
  * `start` and the word ends with the last. The boundaries between phonemes are then half way between those of their
  * characters and those of labial_words_push(); where all characters last equally long, as of voices that only share out
  * the time of a word, they are those of labial_words_push().
@@ -114,7 +114,8 @@ int labial_words_end(labial_words_t *stream);
 int labial_words_next(labial_words_t *stream, unsigned *phoneme, uint32_t *milliseconds);
 
 /*
- * Drops the phonemes that were not taken; no more words will come. The face comes to rest by labial_cancel().
+ * Drops the phonemes that labial_words_next() has not returned; no more words will come. The face comes to rest by
+ * labial_cancel().
  *
  * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE.
  */
@@ -122,18 +123,19 @@ int labial_words_cancel(labial_words_t *stream);
 
 /*
  * Continues after labial_words_end() or labial_words_cancel(): words of the same sound may follow, whose phonemes begin
- * where the last one that was taken ended. For another sound, whose times begin with 0, labial_words_init() it is.
+ * where the last one that labial_words_next() returned ended. For another sound, whose times begin with 0,
+ * labial_words_init() it is.
  *
- * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless words have ended, and while there are phonemes to be
- * taken).
+ * Returns LABIAL_OK, LABIAL_ERROR_NULL or LABIAL_ERROR_STATE (unless words have ended, and while there are phonemes to
+ * be taken).
  */
 int labial_words_restart(labial_words_t *stream);
 
-/* What was pushed and not yet taken: milliseconds and phonemes. `frames` are 0, and so is the delay: how long a word waits
- * depends on when the next one comes. All zero for a null or unprepared stream. */
+/* What was pushed and not yet taken: milliseconds and phonemes. `frames` are 0, and so is the delay: how long a word
+ * waits depends on when the next one comes. All zero for a null or unprepared stream. */
 labial_latency_t labial_words_latency(const labial_words_t *stream);
 
-/* ---- Words without times ------------------------------------------------------------------------------------------ */
+/* ---- Words without times ----------------------------------------------------------------------------------------- */
 
 /* Letters that are read together; longer words are read in parts. */
 #define LABIAL_WORDS_LETTERS 32
@@ -202,7 +204,7 @@ const char *labial_words_label(const labial_words_model_t *model, unsigned phone
 /* What a word usually lasts, in milliseconds; 0 for silence, null and unknown words. */
 uint32_t labial_words_length(const labial_words_model_t *model, const labial_word_t *word);
 
-/* ---- Tables ------------------------------------------------------------------------------------------------------- */
+/* ---- Tables ------------------------------------------------------------------------------------------------------ */
 
 /* A word of the caller's own and its phonemes; numbers beyond the model's count as silence. The word is compared with
  * each stretch of a text between blanks and punctuation other than apostrophes, small and capital letters of ASCII
@@ -249,13 +251,13 @@ struct labial_words_model {
     uint8_t filler[2];           /* phonemes that alternate in unknown words */
 };
 
-/* ---- Private ------------------------------------------------------------------------------------------------------ */
+/* ---- Private ----------------------------------------------------------------------------------------------------- */
 
 /* A word with its time. */
 struct labial_words_span {
     labial_word_t word;
     uint32_t start, end;                   /* milliseconds */
-    uint8_t open;                          /* the end is not known */
+    uint8_t open;                          /* its end is unknown */
     uint8_t stops;                         /* punctuation ends the word */
     uint8_t spelt;                         /* `reach` holds */
     uint16_t reach[LABIAL_WORDS_PHONEMES]; /* where a phoneme's characters end, milliseconds from the start */
