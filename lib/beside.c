@@ -21,7 +21,7 @@
 #define MARK_WAITS 1u
 #define MARK_SHOWN 2u
 
-/* What is known. */
+/* Values of `known`. */
 #define KNOWN_REST 1u
 #define KNOWN_SESSION 2u
 

@@ -1,7 +1,7 @@
 /*
  * channels.c - the channel step (channels.h).
  *
- * Frames are named by their age here: how many ticks ago they were taken.
+ * Frames are named by their age here: how many ticks ago they were accepted.
  */
 #include "channels.h"
 

@@ -4,7 +4,7 @@
  * A state lasts `stride` frames, and so channels take turns: in each tick those that are next are searched and solved
  * for the frames since their last step, up to the latest one, and go back from there to the frames that are due.
  * Channel c has its step every `stride` ticks, c ticks apart from channel 0. So every tick does about the same work,
- * and a frame is complete LABIAL_DELAY(stride) ticks after it was taken.
+ * and a frame is complete LABIAL_DELAY(stride) ticks after it was accepted.
  *
  * Models of a stream may have different numbers of channels. As many step as the widest model has of those whose frames
  * are in hand. Beside frames of a narrower model the others move as its first channel does, and nobody asks.
@@ -21,11 +21,11 @@ labial_shape_t *labial_channels_init(labial_channels_t *channels, unsigned strid
 /* Drops all frames. */
 void labial_channels_reset(labial_channels_t *channels);
 
-/* Advances by a tick; returns the frame that was taken, of the model in `slot`, for the caller to fill in. */
+/* Advances by a tick; returns the accepted frame, of the model in `slot`, for the caller to fill in. */
 labial_frame_t *labial_channels_enter(labial_channels_t *channels, const labial_model_t *const models[LABIAL_MODELS],
                                       unsigned slot);
 
-/* Advances by a tick beyond the last frame that was taken, whose marks say so. */
+/* Advances by a tick beyond the last accepted frame, whose marks say so. */
 void labial_channels_run_out(labial_channels_t *channels);
 
 /* Searches and solves the channels that are next; the frames that are solved now have the articulation `gain`, in

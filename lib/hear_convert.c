@@ -25,7 +25,7 @@ int labial_hear_convert_init(labial_hear_convert_t *convert, uint32_t samples_pe
 
 void labial_hear_convert_reset(labial_hear_convert_t *convert)
 {
-    /* The first converted sample has the time of the first sample, and is known when `reach` others have followed. */
+    /* The first converted sample has the time of the first sample, and needs the `reach` samples behind it. */
     convert->phase = (uint16_t)((convert->reach + 1u) * convert->spacing * 10u);
     convert->at = LABIAL_HEAR_TAPS_;
 }

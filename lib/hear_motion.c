@@ -31,7 +31,7 @@ void labial_hear_motion_hear(labial_hear_motion_t *motion, int loud)
     motion->loud = motion->loud << 1 | (loud ? 1u : 0u);
 }
 
-/* Whether the frame is silent that is due when so many after it are known. */
+/* Whether the frame is silent that is due once so many after it have come. */
 static int frame_is_silent(const labial_hear_motion_t *motion, unsigned known)
 {
     const unsigned after = known < RESTING ? known : RESTING, further = known > RESTING ? known - RESTING : 0u;

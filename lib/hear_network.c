@@ -2,7 +2,7 @@
  * hear_network.c - features to scores and FAPs (labial/hear_model.h). hearing/integer.py computes the same integers.
  *
  * Each block has a ring of rows for what its dense layer made of former frames, and all but the first another one for
- * their own input, which is added when the frames ahead of it are known. A block's output lags its input by
+ * their own input, once they have the frames ahead of it. A block's output lags its input by
  * ahead * dilation frames; until it has that many, it gives none.
  *
  * No sum overflows: 252 products of a weight and an activation are below 2^30, and so is a bias of 16 bits, shifted by
@@ -45,7 +45,7 @@ static void multiply(const labial_hear_dense_t *layer, unsigned rows, unsigned c
     }
 }
 
-/* Adds a sum to the input of a unit, which waits in `waiting` until the sum is known. */
+/* Adds a sum to the input of a unit, which waits for it in `waiting`. */
 static void add_input(int32_t sum, int16_t *waiting, int16_t *x)
 {
     sum += *waiting;

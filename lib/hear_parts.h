@@ -81,7 +81,7 @@ static inline int labial_hear_level_voiced(const labial_hear_level_t *level)
 /* Forgets all frames. */
 void labial_hear_network_reset(labial_hear_network_t *network);
 
-/* Hears the features of a frame. Returns the heads for the frame that is known by now, in Q9, which lie
+/* Hears the features of a frame. Returns the heads for the frame that is complete with it, in Q9, which lie
  * in `scratch`; null for the first `ahead` frames. */
 const int16_t *labial_hear_network(labial_hear_network_t *network, const int16_t features[LABIAL_HEAR_INPUTS],
                                    int16_t scratch[LABIAL_HEAR_SCRATCH]);

@@ -45,7 +45,7 @@ void labial_channels_reset(labial_channels_t *channels)
     channels->frames = channels->shared = channels->phoneme = 0;
 }
 
-/* The place in the rings of the frame of an age: how many ticks ago it was taken. */
+/* The place in the rings of the frame of an age: how many ticks ago it was accepted. */
 static unsigned place_of(const labial_channels_t *channels, unsigned age)
 {
     return channels->place >= age ? channels->place - age : channels->place + LABIAL_PIECE - age;
@@ -85,7 +85,7 @@ int labial_channels_due(const labial_channels_t *channels, const labial_model_t 
 
 /* ---- Pieces ------------------------------------------------------------------------------------------------------ */
 
-/* Adds the frame that was taken to the piece; returns whether it is the last one. `*fade` is how many frames the piece
+/* Adds the accepted frame to the piece; returns whether it is the last one. `*fade` is how many frames the piece
  * shares with the next one then. */
 static int ends_piece(labial_channels_t *channels, unsigned *fade)
 {

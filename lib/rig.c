@@ -309,7 +309,7 @@ int32_t labial_rig_step(const labial_rig_output_t *output, labial_sight_t *sight
                                     : slewed(output, sight->wanted[0], touch, last);
 }
 
-/* The shares of the sounds of frame number k, null where they are not known. */
+/* The shares of the sounds of frame number k, null if there are none. */
 static const uint8_t *shares_of(const uint8_t *shares, unsigned k)
 {
     return shares ? shares + (size_t)LABIAL_VISEMES * k : NULL;

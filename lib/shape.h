@@ -15,7 +15,7 @@
 void labial_shape_select(const labial_model_t *model, const labial_spoken_t *spoken, labial_selection_t *selection);
 
 /*
- * The target of a frame that was taken: its phoneme's shape and what the temporal kernels of its neighbours add, but
+ * The target of an accepted frame: its phoneme's shape and what the temporal kernels of its neighbours add, but
  * not below the phoneme's floor, nor below that of a short contact beside it. Returns the channels that are in
  * contact.
  */

@@ -80,7 +80,7 @@ static void select_ahead(labial_t *stream)
         select_more(stream, left == 0);
 }
 
-/* Stores a frame that was taken, and its target; returns it. */
+/* Stores an accepted frame and its target; returns it. */
 static const labial_frame_t *store(labial_t *stream, const labial_taken_t *taken)
 {
     labial_frame_t *frame = labial_channels_enter(&stream->channels, stream->models, taken->slot);
@@ -202,7 +202,7 @@ static int rest(labial_t *stream)
     return 1;
 }
 
-/* The same where no frame is due: the pose is held for a while before. */
+/* The same where no frame is due: the face keeps its pose for a while before. */
 static int hold_or_rest(labial_t *stream)
 {
     if (stream->exact)

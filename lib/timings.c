@@ -29,7 +29,7 @@ static int row_whole(labial_timings_t *t, const char *what, const char *text, ui
                                     unit == HTK_UNIT ? " of 100 ns" : "");
 }
 
-/* The end of a phoneme of which nothing else is told, which `shown` is in the message. */
+/* The end of a phoneme that has no other time, which `shown` is in the message. */
 static int row_end(labial_timings_t *t, const char *shown, uint64_t *end)
 {
     *end += t->origin;

@@ -97,7 +97,7 @@ static int decimal_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Exponents are not told apart beyond this: no field has so many digits. */
+/* Exponents beyond this count as it: no field has so many digits. */
 #define EXPONENT_MAX 100000
 
 /* The parts of a number: how many digits it has, how many of them stand before the point, and its power of ten. */
@@ -182,7 +182,7 @@ int labial_timings_is_number(const char *text)
 
 /* ---- Timings --------------------------------------------------------------------------------------------------- */
 
-/* Reads an intensity from 0 to 1 that ends with `>`, which is taken away, and nothing behind it. */
+/* Reads an intensity from 0 to 1, and removes the `>` that ends it; nothing may follow. */
 static int read_intensity(labial_timings_t *t, char *text, int16_t *intensity)
 {
     const uint32_t length = labial_timings_length(text);

@@ -18,8 +18,8 @@
 
 /* What a state adds to equation 3 in each of its frames. */
 typedef struct {
-    int32_t position;       /* Q12 FAP: where the frame is held with a target of 0 */
-    int32_t share;          /* of the target in where it is held, Q12 */
+    int32_t position;       /* Q12 FAP: the pose to which `hold` pulls with a target of 0 */
+    int32_t share;          /* of the target in that pose, Q12 */
     int32_t hold;           /* weight */
     int32_t centre;         /* Q4 FAP: of positions */
     int32_t gain;           /* articulation, in 1/256 */

@@ -1,7 +1,7 @@
 /*
  * units.h - phonemes to frames: the queue of pushed phonemes, read frame by frame.
  *
- * A frame is accepted, that is taken from the queue, when everything that its target depends on is known: the phonemes
+ * A frame is accepted, and leaves the queue, once everything that its target depends on has come: the phonemes
  * that its model's kernels reach, and the next phoneme. So frames never depend on when their phonemes were pushed. A
  * pause adds no delay: a silence that is longer than the kernels look ahead is treated as two phonemes, the first of
  * which does not depend on what follows.

@@ -3,9 +3,9 @@
  *
  *     message --rules--> items --plan--> segments --stream--> motion --fade--> frames
  *
- * The stream is given segments when it needs them. What is told of the time before may change some that it has: with
+ * The stream is given segments when it needs them. Items for the time before may change some that it has: with
  * the next frame they are compared, and if they differ, a new stream is given all from two to three seconds before, and
- * the difference between its motion and what was shown fades.
+ * the difference between its motion and the last frame fades.
  */
 #include "voice_parts.h"
 

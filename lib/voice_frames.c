@@ -13,7 +13,7 @@
 /* How long the face takes to ease to rest, milliseconds; it is there LABIAL_VOICE_REST after the last item. */
 #define REST_EASING 300u
 
-/* How much shorter than what is known a sound may be that has ended, milliseconds. */
+/* How much shorter than its items a sound may be that has ended, milliseconds. */
 #define SHORTER 100
 
 /* How long a clock that has not stopped may stand, milliseconds: some move in steps. */
@@ -108,7 +108,7 @@ static int32_t left_at(uint32_t step, uint32_t steps)
     return left;
 }
 
-/* Eases the frame to the neutral face once nothing more is known: the silence of a model is the pose of its talkers
+/* Eases the frame to the neutral face after the last item: the silence of a model is the pose of its talkers
  * between sentences, which is close to neutral, but not quite. */
 static void rest_behind(labial_voice_t *voice, uint32_t frame)
 {
@@ -142,7 +142,7 @@ static void make_frame(labial_voice_t *voice, uint32_t frame)
         rest_behind(voice, frame);
 }
 
-/* A new stream, which is given the plan from a whole second on; the difference from what was shown fades. */
+/* A new stream, which is given the plan from a whole second on; the difference from the last frame fades. */
 static void renew_stream(labial_voice_t *voice, uint32_t second)
 {
     uint32_t frame = second * voice->model->frames_per_second;
@@ -257,7 +257,7 @@ int labial_voice_next(labial_voice_t *voice, uint64_t milliseconds, uint32_t *fr
     return LABIAL_OK;
 }
 
-/* Whether the sound has ended, as far as is known. */
+/* Whether the sound has ended, by the items so far. */
 static int is_at_end(labial_voice_t *voice)
 {
     const int64_t latest = labial_voice_latest(voice);

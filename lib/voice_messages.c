@@ -1,5 +1,5 @@
 /*
- * voice_messages.c - what a voice is told: messages become items of utterances, by the rules of labial/voice.h.
+ * voice_messages.c - messages become items of utterances, by the rules of labial/voice.h.
  */
 #include "voice_parts.h"
 
@@ -40,7 +40,7 @@ static uint16_t key_kept(uint32_t key)
     return (uint16_t)(1u + key % 0xffffu);
 }
 
-/* The end of an item; the beginning where it is not known, and of characters that end before. */
+/* The end of an item; the beginning where that is unknown, and of characters that end before. */
 static uint64_t item_end(const labial_voice_message_t *message, const labial_voice_item_t *item)
 {
     if (item->end == LABIAL_VOICE_NO_END)
@@ -107,7 +107,7 @@ static message_summary_t summarise(const labial_voice_t *voice, const labial_voi
     return found;
 }
 
-/* Whether a joined message was told before; notes it. */
+/* Whether a joined message came before; notes it. */
 static int was_told(labial_voice_t *voice, uint32_t hash)
 {
     unsigned i;

@@ -2,7 +2,7 @@
  * voice_parts.h - what the files of labial/voice.h share.
  *
  *     voice.c          calls, and the queue of utterances
- *     voice_messages.c what is told, to items of utterances
+ *     voice_messages.c messages to items of utterances
  *     voice_frames.c   the frames that are due
  *     voice_items.c    the items of all utterances, in one array
  *     voice_plan.c     items to phonemes in time, without gaps
@@ -52,10 +52,10 @@ static inline int64_t labial_voice_now(const labial_voice_t *voice)
 
 /* ---- Utterances -------------------------------------------------------------------------------------------------- */
 
-/* Moves the utterances that are queued behind one that was told more of. */
+/* Moves the utterances that are queued behind one that has grown. */
 void labial_voice_requeue(labial_voice_t *voice, unsigned position);
 
-/* The end of all that is known, milliseconds from which the offset is left out; -1 if nothing is. */
+/* The end of all items, milliseconds without the offset; -1 without items. */
 int64_t labial_voice_latest(labial_voice_t *voice);
 
 /* Of an utterance that a message belongs to: it is over; or there is none yet, and the message has nothing for it. */
@@ -145,7 +145,7 @@ void labial_voice_remove(labial_voice_t *voice, labial_voice_utterance_t *uttera
 void labial_voice_insert(labial_voice_t *voice, labial_voice_utterance_t *utterance, const labial_voice_place_t *item,
                          const char *text);
 
-/* Milliseconds from `from` to `to` that something was told of, or was forgotten. */
+/* Milliseconds from `from` to `to` that have items, or had some that were forgotten. */
 uint32_t labial_voice_told(const labial_voice_t *voice, const labial_voice_utterance_t *utterance, uint32_t from,
                            uint32_t to);
 
@@ -178,7 +178,7 @@ void labial_voice_plan_start(labial_voice_t *voice, int64_t moment);
  * again and again. */
 void labial_voice_plan_next(labial_voice_t *voice, labial_voice_segment_t *segment);
 
-/* Whether anything but silence is known. */
+/* Whether there is anything but silence. */
 int labial_voice_plan_sounds(labial_voice_t *voice);
 
 /* When the utterance at this position ends, milliseconds of the sound. */
@@ -193,7 +193,7 @@ static inline void labial_voice_look(labial_voice_plan_t *plan, uint32_t at)
 
 /* ---- Frames ------------------------------------------------------------------------------------------------------ */
 
-/* Begins to fade from what was shown, where the stream is at `made`. */
+/* Begins to fade from the last frame, where the stream is at `made`. */
 void labial_voice_begin_fade(labial_voice_t *voice, uint32_t steps);
 
 /* Model's number of a phoneme of labial/words.h. */

@@ -1,8 +1,8 @@
 /*
- * voice_plan.c - what is known of a voice as phonemes in time (voice_parts.h).
+ * voice_plan.c - items of a voice to phonemes in time (voice_parts.h).
  *
  * The plan makes one segment after the other, when the stream needs it, and notes up to where it has looked at items:
- * what is told behind that changes nothing that it made. It begins at any time, with a few items before it.
+ * items behind that change nothing that it made. It begins at any time, with a few items before it.
  */
 #include "voice_parts.h"
 

@@ -20,7 +20,7 @@
 #define SONORANTS (LETTER('l') | LETTER('r') | LETTER('m') | LETTER('n') | LETTER('w'))
 #define CONSONANTS (0x07fffffeu & ~VOWEL_LETTERS)
 
-/* A letter and what is known around it. */
+/* A letter and its neighbourhood. */
 typedef struct {
     const uint8_t *sounds; /* the tables' labels */
     const labial_words_letter_t *letters;

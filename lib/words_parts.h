@@ -94,7 +94,7 @@ typedef struct {
     labial_word_t *word;
     labial_words_context_t *context;
     labial_words_place_t here;
-    unsigned is_tail_here; /* what may be taken back is at the end of `word` */
+    unsigned is_tail_here; /* what the next word may take back is at the end of `word` */
     unsigned is_address;   /* a web address was recognised in this word */
     unsigned has_letters;  /* letters stand in this word, behind them a hyphen or a number at most */
 } labial_words_reading_t;
@@ -137,7 +137,7 @@ void labial_words_say_name(labial_words_reading_t *reading, const char *name, in
 /* Says words where the current character is. */
 void labial_words_say_here(labial_words_reading_t *reading, const char *words);
 
-/* Notes that the phonemes from `first` on may be taken back by the next word; takes such phonemes back. */
+/* Notes that the next word may take back the phonemes from `first` on; takes such phonemes back. */
 void labial_words_keep_tail(labial_words_reading_t *reading, unsigned first);
 void labial_words_take_back(labial_words_reading_t *reading);
 

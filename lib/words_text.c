@@ -267,7 +267,7 @@ static int is_direction(const labial_words_place_t *here, unsigned closing)
 
 /* Whether what a square bracket begins is silent: all but the text of a link, behind which an address or the number of
  * one stands. Where the end is not in sight, since words come one by one, a first word with a capital and small letters
- * is taken for the text of a link, unless it is a stage direction. */
+ * is the text of a link, unless it is a stage direction. */
 static int is_tag(const labial_words_place_t *here)
 {
     labial_words_place_t next = *here, word;

@@ -14,7 +14,7 @@
 #define VOICELESS 2u
 #define NONE 4u /* no phoneme */
 
-/* A word whose end is not known takes all of the time to the next one if that is at most this share of what it usually
+/* A word of unknown end takes all of the time to the next one if that is at most this share of what it usually
  * lasts, in quarters. */
 #define STRETCHED 6u
 
