@@ -17,30 +17,12 @@ static const hearing_t bundled[] = { LABIAL_BUNDLED_HEARING{ 0, 0, 0 } };
 
 #define BUNDLED (sizeof bundled / sizeof bundled[0] - 1u)
 
-uint32_t ears_size(void)
-{
-    return sizeof(ears_t);
-}
-
-const char *hearing_name(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].name : NULL;
-}
-
-const labial_hear_model_t *hearing_model(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].model : NULL;
-}
-
-unsigned hearing_classes(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].model->classes : 0;
-}
-
-const char *hearing_class(unsigned number, unsigned shown)
-{
-    return shown < hearing_classes(number) ? bundled[number].classes[shown] : NULL;
-}
+FLAT_RETURNS(uint32_t ears_size(void), sizeof(ears_t))
+FLAT_RETURNS(const char *hearing_name(unsigned number), number < BUNDLED ? bundled[number].name : NULL)
+FLAT_RETURNS(const labial_hear_model_t *hearing_model(unsigned number), number < BUNDLED ? bundled[number].model : NULL)
+FLAT_RETURNS(unsigned hearing_classes(unsigned number), number < BUNDLED ? bundled[number].model->classes : 0)
+FLAT_RETURNS(const char *hearing_class(unsigned number, unsigned shown),
+             shown < hearing_classes(number) ? bundled[number].classes[shown] : NULL)
 
 static void take_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
@@ -88,10 +70,7 @@ int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_p
     return result == LABIAL_OK ? labial_hear_classes(&ears->hear, take_stretch) : result;
 }
 
-uint32_t ears_latency(const ears_t *ears)
-{
-    return labial_hear_latency(&ears->hear).delay_milliseconds;
-}
+FLAT_RETURNS(uint32_t ears_latency(const ears_t *ears), labial_hear_latency(&ears->hear).delay_milliseconds)
 
 int ears_push(ears_t *ears, const int16_t *samples, uint32_t count, int16_t *faps, uint8_t *visemes,
               uint32_t *stretches, uint32_t room)
@@ -113,32 +92,9 @@ int ears_cancel(ears_t *ears, uint32_t milliseconds, int16_t *faps, uint8_t *vis
     return taken(ears, labial_hear_cancel(&ears->hear, milliseconds));
 }
 
-uint32_t ears_stretches(const ears_t *ears)
-{
-    return ears->stretch_count;
-}
-
-int ears_restart(ears_t *ears)
-{
-    return labial_hear_restart(&ears->hear);
-}
-
-int ears_exact(ears_t *ears, unsigned exact)
-{
-    return labial_hear_exact(&ears->hear, exact != 0);
-}
-
-unsigned ears_level(const ears_t *ears)
-{
-    return labial_hear_level(&ears->hear);
-}
-
-int ears_set_level(ears_t *ears, unsigned level)
-{
-    return labial_hear_set_level(&ears->hear, level);
-}
-
-int ears_articulation(ears_t *ears, unsigned percent)
-{
-    return labial_hear_articulation(&ears->hear, percent);
-}
+FLAT_RETURNS(uint32_t ears_stretches(const ears_t *ears), ears->stretch_count)
+FLAT_RETURNS(int ears_restart(ears_t *ears), labial_hear_restart(&ears->hear))
+FLAT_RETURNS(int ears_exact(ears_t *ears, unsigned exact), labial_hear_exact(&ears->hear, exact != 0))
+FLAT_RETURNS(unsigned ears_level(const ears_t *ears), labial_hear_level(&ears->hear))
+FLAT_RETURNS(int ears_set_level(ears_t *ears, unsigned level), labial_hear_set_level(&ears->hear, level))
+FLAT_RETURNS(int ears_articulation(ears_t *ears, unsigned percent), labial_hear_articulation(&ears->hear, percent))

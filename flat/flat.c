@@ -19,25 +19,11 @@
 #define TEXT(x) #x
 #define NUMBER(x) TEXT(x)
 
-uint32_t interface(void)
-{
-    return FLAT_INTERFACE;
-}
-
-const char *version(void)
-{
-    return NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH);
-}
-
-const char *method(void)
-{
-    return LABIAL_PAPER ? "paper" : "labial";
-}
-
-const char *result_text(int result)
-{
-    return labial_result_text(result);
-}
+FLAT_RETURNS(uint32_t interface(void), FLAT_INTERFACE)
+FLAT_RETURNS(const char *version(void),
+             NUMBER(LABIAL_VERSION_MAJOR) "." NUMBER(LABIAL_VERSION_MINOR) "." NUMBER(LABIAL_VERSION_PATCH))
+FLAT_RETURNS(const char *method(void), LABIAL_PAPER ? "paper" : "labial")
+FLAT_RETURNS(const char *result_text(int result), labial_result_text(result))
 
 #ifndef __wasm__
 const char *function(unsigned number)
@@ -55,35 +41,12 @@ typedef struct {
 
 /* ---- Sizes ------------------------------------------------------------------------------------------------------- */
 
-uint32_t mouth_size(void)
-{
-    return sizeof(mouth_t);
-}
-
-uint32_t blob_size(void)
-{
-    return sizeof(labial_blob_t);
-}
-
-uint32_t laugh_size(void)
-{
-    return sizeof(labial_laugh_t);
-}
-
-uint32_t timings_size(void)
-{
-    return sizeof(labial_timings_t);
-}
-
-uint32_t rig_output_size(void)
-{
-    return sizeof(labial_rig_output_t);
-}
-
-uint32_t rig_curve_size(void)
-{
-    return sizeof(more_t);
-}
+FLAT_RETURNS(uint32_t mouth_size(void), sizeof(mouth_t))
+FLAT_RETURNS(uint32_t blob_size(void), sizeof(labial_blob_t))
+FLAT_RETURNS(uint32_t laugh_size(void), sizeof(labial_laugh_t))
+FLAT_RETURNS(uint32_t timings_size(void), sizeof(labial_timings_t))
+FLAT_RETURNS(uint32_t rig_output_size(void), sizeof(labial_rig_output_t))
+FLAT_RETURNS(uint32_t rig_curve_size(void), sizeof(more_t))
 
 /* ---- Models and names -------------------------------------------------------------------------------------------- */
 
@@ -94,65 +57,22 @@ static const struct {
 } bundled[] = { LABIAL_BUNDLED };
 #define BUNDLED (sizeof bundled / sizeof bundled[0])
 
-const char *bundled_name(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].name : NULL;
-}
-
-const labial_model_t *bundled_model(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].model : NULL;
-}
-
-const labial_names_t *bundled_names(unsigned number)
-{
-    return number < BUNDLED ? bundled[number].names : NULL;
-}
-
-unsigned model_phonemes(const labial_model_t *model)
-{
-    return model->phoneme_count;
-}
-
-unsigned model_silence(const labial_model_t *model)
-{
-    return model->silence;
-}
-
-unsigned model_fps(const labial_model_t *model)
-{
-    return model->frames_per_second;
-}
-
-unsigned model_stride(const labial_model_t *model)
-{
-    return model->search_stride;
-}
-
-int model_load(labial_blob_t *blob, const void *data, uint32_t size)
-{
-    return labial_model_load(blob, data, size);
-}
-
-unsigned names_phonemes(const labial_names_t *names)
-{
-    return names->phoneme_count;
-}
-
-const char *label_at(const labial_names_t *names, unsigned phoneme)
-{
-    return phoneme < names->phoneme_count ? names->labels[phoneme] : "";
-}
-
-int find(const labial_names_t *names, unsigned labels, const char *name, uint32_t length)
-{
-    return labial_find_in(names, (labial_labels_t)labels, name, length);
-}
-
-int find_nearest(const labial_names_t *names, unsigned labels, const char *name, uint32_t length, unsigned silence)
-{
-    return labial_find_nearest(names, (labial_labels_t)labels, name, length, silence);
-}
+FLAT_RETURNS(const char *bundled_name(unsigned number), number < BUNDLED ? bundled[number].name : NULL)
+FLAT_RETURNS(const labial_model_t *bundled_model(unsigned number), number < BUNDLED ? bundled[number].model : NULL)
+FLAT_RETURNS(const labial_names_t *bundled_names(unsigned number), number < BUNDLED ? bundled[number].names : NULL)
+FLAT_RETURNS(unsigned model_phonemes(const labial_model_t *model), model->phoneme_count)
+FLAT_RETURNS(unsigned model_silence(const labial_model_t *model), model->silence)
+FLAT_RETURNS(unsigned model_fps(const labial_model_t *model), model->frames_per_second)
+FLAT_RETURNS(unsigned model_stride(const labial_model_t *model), model->search_stride)
+FLAT_RETURNS(int model_load(labial_blob_t *blob, const void *data, uint32_t size), labial_model_load(blob, data, size))
+FLAT_RETURNS(unsigned names_phonemes(const labial_names_t *names), names->phoneme_count)
+FLAT_RETURNS(const char *label_at(const labial_names_t *names, unsigned phoneme),
+             phoneme < names->phoneme_count ? names->labels[phoneme] : "")
+FLAT_RETURNS(int find(const labial_names_t *names, unsigned labels, const char *name, uint32_t length),
+             labial_find_in(names, (labial_labels_t)labels, name, length))
+FLAT_RETURNS(int find_nearest(const labial_names_t *names, unsigned labels, const char *name, uint32_t length,
+                              unsigned silence),
+             labial_find_nearest(names, (labial_labels_t)labels, name, length, silence))
 
 /* ---- Streams ----------------------------------------------------------------------------------------------------- */
 
@@ -190,15 +110,9 @@ int mouth_use(mouth_t *mouth, const labial_model_t *model)
     return result;
 }
 
-int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds)
-{
-    return labial_push(&mouth->stream, phoneme, milliseconds);
-}
-
-unsigned mouth_room(const mouth_t *mouth)
-{
-    return labial_room(&mouth->stream);
-}
+FLAT_RETURNS(int mouth_push(mouth_t *mouth, unsigned phoneme, uint32_t milliseconds),
+             labial_push(&mouth->stream, phoneme, milliseconds))
+FLAT_RETURNS(unsigned mouth_room(const mouth_t *mouth), labial_room(&mouth->stream))
 
 int mouth_end(mouth_t *mouth)
 {
@@ -220,10 +134,7 @@ int mouth_restart(mouth_t *mouth)
     return result;
 }
 
-int mouth_articulation(mouth_t *mouth, unsigned percent)
-{
-    return labial_articulation(&mouth->stream, percent);
-}
+FLAT_RETURNS(int mouth_articulation(mouth_t *mouth, unsigned percent), labial_articulation(&mouth->stream, percent))
 
 int mouth_exact(mouth_t *mouth, unsigned exact)
 {
@@ -238,45 +149,14 @@ int mouth_tick(mouth_t *mouth)
     return mouth->state;
 }
 
-unsigned mouth_moved(const mouth_t *mouth)
-{
-    return mouth->moved;
-}
-
-const int16_t *mouth_faps(const mouth_t *mouth)
-{
-    return mouth->faps;
-}
-
-const uint8_t *mouth_visemes(const mouth_t *mouth)
-{
-    return mouth->shares;
-}
-
-int mouth_state(const mouth_t *mouth)
-{
-    return mouth->state;
-}
-
-uint32_t mouth_held(const mouth_t *mouth)
-{
-    return labial_latency(&mouth->stream).frames;
-}
-
-uint32_t mouth_milliseconds(const mouth_t *mouth)
-{
-    return labial_latency(&mouth->stream).milliseconds;
-}
-
-unsigned mouth_waiting(const mouth_t *mouth)
-{
-    return labial_latency(&mouth->stream).phonemes;
-}
-
-unsigned mouth_delay(const mouth_t *mouth)
-{
-    return labial_latency(&mouth->stream).delay;
-}
+FLAT_RETURNS(unsigned mouth_moved(const mouth_t *mouth), mouth->moved)
+FLAT_RETURNS(const int16_t *mouth_faps(const mouth_t *mouth), mouth->faps)
+FLAT_RETURNS(const uint8_t *mouth_visemes(const mouth_t *mouth), mouth->shares)
+FLAT_RETURNS(int mouth_state(const mouth_t *mouth), mouth->state)
+FLAT_RETURNS(uint32_t mouth_held(const mouth_t *mouth), labial_latency(&mouth->stream).frames)
+FLAT_RETURNS(uint32_t mouth_milliseconds(const mouth_t *mouth), labial_latency(&mouth->stream).milliseconds)
+FLAT_RETURNS(unsigned mouth_waiting(const mouth_t *mouth), labial_latency(&mouth->stream).phonemes)
+FLAT_RETURNS(unsigned mouth_delay(const mouth_t *mouth), labial_latency(&mouth->stream).delay)
 
 int mouth_run(mouth_t *mouth, int16_t *out, uint8_t *shares, unsigned count)
 {
@@ -297,10 +177,8 @@ int mouth_run(mouth_t *mouth, int16_t *out, uint8_t *shares, unsigned count)
 
 /* ---- Laughs ------------------------------------------------------------------------------------------------------ */
 
-int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed)
-{
-    return labial_laugh_init(laugh, milliseconds, intensity, seed);
-}
+FLAT_RETURNS(int laugh_init(labial_laugh_t *laugh, uint32_t milliseconds, unsigned intensity, uint32_t seed),
+             labial_laugh_init(laugh, milliseconds, intensity, seed))
 
 int laugh_next(labial_laugh_t *laugh, uint32_t *out)
 {
@@ -310,10 +188,8 @@ int laugh_next(labial_laugh_t *laugh, uint32_t *out)
     return result;
 }
 
-int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out)
-{
-    return labial_blend(&labial_blend_default, intensity, words, speech, laugh, out);
-}
+FLAT_RETURNS(int blend(unsigned intensity, unsigned words, const int16_t *speech, const int16_t *laugh, int16_t *out),
+             labial_blend(&labial_blend_default, intensity, words, speech, laugh, out))
 
 /* ---- Rigs -------------------------------------------------------------------------------------------------------- */
 
@@ -376,15 +252,8 @@ void rig_weigh(const labial_rig_output_t *outputs, unsigned count, const int16_t
 
 /* ---- Timings ----------------------------------------------------------------------------------------------------- */
 
-const char *timings_name(unsigned format)
-{
-    return labial_timings_format_name(format);
-}
-
-const char *timings_suffix(unsigned format)
-{
-    return labial_timings_format_suffix(format);
-}
+FLAT_RETURNS(const char *timings_name(unsigned format), labial_timings_format_name(format))
+FLAT_RETURNS(const char *timings_suffix(unsigned format), labial_timings_format_suffix(format))
 
 int timings_init(labial_timings_t *timings, unsigned format, const char *tier, unsigned tier_number)
 {
@@ -421,39 +290,18 @@ int timings_end(labial_timings_t *timings, double *times, int32_t *numbers)
     return told(&timing, labial_timings_end(timings, &timing), times, numbers);
 }
 
-const char *timings_label(const labial_timings_t *timings)
-{
-    return timings->found.label;
-}
-
-const char *timings_word(const labial_timings_t *timings)
-{
-    return timings->found.word;
-}
-
-const char *timings_message(const labial_timings_t *timings)
-{
-    return labial_timings_message(timings);
-}
-
-uint32_t timings_line(const labial_timings_t *timings)
-{
-    return labial_timings_line(timings);
-}
+FLAT_RETURNS(const char *timings_label(const labial_timings_t *timings), timings->found.label)
+FLAT_RETURNS(const char *timings_word(const labial_timings_t *timings), timings->found.word)
+FLAT_RETURNS(const char *timings_message(const labial_timings_t *timings), labial_timings_message(timings))
+FLAT_RETURNS(uint32_t timings_line(const labial_timings_t *timings), labial_timings_line(timings))
 
 /* ---- Faces ------------------------------------------------------------------------------------------------------- */
 
 #ifdef FLAT_FACES
 
-const char *face_name(unsigned face)
-{
-    return face < faces_count ? faces[face].name : NULL;
-}
-
-const char *weight_name(unsigned face, unsigned weight)
-{
-    return weight < faces[face].rig->count ? faces[face].outputs[weight] : NULL;
-}
+FLAT_RETURNS(const char *face_name(unsigned face), face < faces_count ? faces[face].name : NULL)
+FLAT_RETURNS(const char *weight_name(unsigned face, unsigned weight),
+             weight < faces[face].rig->count ? faces[face].outputs[weight] : NULL)
 
 void weigh(unsigned face, const int16_t *faps, const uint8_t *shares, int32_t *out)
 {
@@ -461,9 +309,6 @@ void weigh(unsigned face, const int16_t *faps, const uint8_t *shares, int32_t *o
     labial_rig_apply_visemes(faces[face].rig, faps, shares, out);
 }
 
-const char *attribution(void)
-{
-    return LABIAL_ATTRIBUTION;
-}
+FLAT_RETURNS(const char *attribution(void), LABIAL_ATTRIBUTION)
 
 #endif

@@ -37,6 +37,13 @@
 #define FLAT(name) FLAT_PRAGMA(redefine_extname name flat_##name) __attribute__((visibility("default")))
 #endif
 
+/* Defines a function that does no more than to return a value. */
+#define FLAT_RETURNS(function, value)                                                                                  \
+    function                                                                                                           \
+    {                                                                                                                  \
+        return value;                                                                                                  \
+    }
+
 /* A stream with all that belongs to it. */
 typedef struct {
     labial_t stream;

@@ -3,10 +3,8 @@
  */
 #include "flat.h"
 
-uint32_t servos_size(unsigned outputs, unsigned ahead)
-{
-    return (uint32_t)(sizeof(servos_t) + LABIAL_FACE_SIZE(outputs, ahead));
-}
+FLAT_RETURNS(uint32_t servos_size(unsigned outputs, unsigned ahead),
+             (uint32_t)(sizeof(servos_t) + LABIAL_FACE_SIZE(outputs, ahead)))
 
 int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned count, unsigned ahead)
 {
@@ -16,47 +14,14 @@ int servos_init(servos_t *servos, const labial_rig_output_t *outputs, unsigned c
                             LABIAL_FACE_SIZE(count, ahead));
 }
 
-int servos_frame(servos_t *servos, const int16_t *faps, const uint8_t *shares)
-{
-    return labial_face_visemes(&servos->face, faps, shares);
-}
-
-int servos_values(servos_t *servos, const int32_t *wanted)
-{
-    return labial_face_values(&servos->face, wanted);
-}
-
-int servos_tick(servos_t *servos, int32_t *values)
-{
-    return labial_face_tick(&servos->face, values);
-}
-
-int servos_play(servos_t *servos)
-{
-    return labial_face_play(&servos->face);
-}
-
-int servos_skip(servos_t *servos, unsigned count)
-{
-    return labial_face_skip(&servos->face, count);
-}
-
-int servos_cancel(servos_t *servos, uint32_t milliseconds)
-{
-    return labial_face_cancel(&servos->face, milliseconds);
-}
-
-int servos_soft_start(servos_t *servos, unsigned ticks)
-{
-    return labial_face_soft_start(&servos->face, ticks);
-}
-
-unsigned servos_attached(const servos_t *servos)
-{
-    return labial_face_attached(&servos->face);
-}
-
-int servos_place(servos_t *servos, const int32_t *values)
-{
-    return labial_face_place(&servos->face, values);
-}
+FLAT_RETURNS(int servos_frame(servos_t *servos, const int16_t *faps, const uint8_t *shares),
+             labial_face_visemes(&servos->face, faps, shares))
+FLAT_RETURNS(int servos_values(servos_t *servos, const int32_t *wanted), labial_face_values(&servos->face, wanted))
+FLAT_RETURNS(int servos_tick(servos_t *servos, int32_t *values), labial_face_tick(&servos->face, values))
+FLAT_RETURNS(int servos_play(servos_t *servos), labial_face_play(&servos->face))
+FLAT_RETURNS(int servos_skip(servos_t *servos, unsigned count), labial_face_skip(&servos->face, count))
+FLAT_RETURNS(int servos_cancel(servos_t *servos, uint32_t milliseconds),
+             labial_face_cancel(&servos->face, milliseconds))
+FLAT_RETURNS(int servos_soft_start(servos_t *servos, unsigned ticks), labial_face_soft_start(&servos->face, ticks))
+FLAT_RETURNS(unsigned servos_attached(const servos_t *servos), labial_face_attached(&servos->face))
+FLAT_RETURNS(int servos_place(servos_t *servos, const int32_t *values), labial_face_place(&servos->face, values))

@@ -18,15 +18,9 @@ static uint32_t memory_size(const labial_model_t *model, uint32_t places)
     return labial_workspace_size(model) + (uint32_t)sizeof(struct labial_voice_place) * places;
 }
 
-uint32_t voice_size(const labial_model_t *model, uint32_t places)
-{
-    return VOICE_BYTES + memory_size(model, places);
-}
-
-uint32_t voice_items_size(uint32_t count)
-{
-    return (uint32_t)sizeof(labial_voice_item_t) * count;
-}
+FLAT_RETURNS(uint32_t voice_size(const labial_model_t *model, uint32_t places),
+             VOICE_BYTES + memory_size(model, places))
+FLAT_RETURNS(uint32_t voice_items_size(uint32_t count), (uint32_t)sizeof(labial_voice_item_t) * count)
 
 int voice_init(labial_voice_t *voice, const labial_model_t *model, uint32_t places, const uint8_t *numbers,
                int32_t offset)
@@ -39,15 +33,10 @@ int voice_init(labial_voice_t *voice, const labial_model_t *model, uint32_t plac
     return result == LABIAL_OK ? labial_voice_offset(voice, offset) : result;
 }
 
-int voice_words(labial_voice_t *voice, const labial_words_own_t *own)
-{
-    return labial_voice_words(voice, &words_en, own);
-}
-
-int voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own)
-{
-    return labial_voice_pronounce(voice, own, NULL);
-}
+FLAT_RETURNS(int voice_words(labial_voice_t *voice, const labial_words_own_t *own),
+             labial_voice_words(voice, &words_en, own))
+FLAT_RETURNS(int voice_pronounce(labial_voice_t *voice, labial_voice_own_fn own),
+             labial_voice_pronounce(voice, own, NULL))
 
 /* Microseconds of seconds; UINT64_MAX - 1 for what is no time. */
 static uint64_t microseconds(double seconds)
@@ -84,25 +73,11 @@ int voice_tell(labial_voice_t *voice, void *memory, uint32_t count, const double
     return labial_voice_tell(voice, &message);
 }
 
-uint32_t voice_identity(const char *text, uint32_t size)
-{
-    return labial_voice_identity(text, size);
-}
-
-int voice_begin(labial_voice_t *voice, double at, uint32_t utterance)
-{
-    return labial_voice_begin(voice, at < 0.0 ? LABIAL_VOICE_BEHIND : (uint64_t)(at * 1e3 + 0.5), utterance);
-}
-
-int voice_finish(labial_voice_t *voice)
-{
-    return labial_voice_finish(voice);
-}
-
-int voice_cancel(labial_voice_t *voice, uint32_t milliseconds)
-{
-    return labial_voice_cancel(voice, milliseconds);
-}
+FLAT_RETURNS(uint32_t voice_identity(const char *text, uint32_t size), labial_voice_identity(text, size))
+FLAT_RETURNS(int voice_begin(labial_voice_t *voice, double at, uint32_t utterance),
+             labial_voice_begin(voice, at < 0.0 ? LABIAL_VOICE_BEHIND : (uint64_t)(at * 1e3 + 0.5), utterance))
+FLAT_RETURNS(int voice_finish(labial_voice_t *voice), labial_voice_finish(voice))
+FLAT_RETURNS(int voice_cancel(labial_voice_t *voice, uint32_t milliseconds), labial_voice_cancel(voice, milliseconds))
 
 int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *faps)
 {
@@ -110,35 +85,12 @@ int voice_frame(labial_voice_t *voice, uint32_t due, int16_t *faps)
     return labial_voice_next(voice, ((uint64_t)due * 1000u + rate - 1u) / rate, NULL, faps);
 }
 
-int voice_visemes(const labial_voice_t *voice, uint8_t *shares)
-{
-    return labial_voice_visemes(voice, shares);
-}
-
-uint32_t voice_next(const labial_voice_t *voice)
-{
-    return voice->next;
-}
-
-int voice_done(labial_voice_t *voice)
-{
-    return labial_voice_done(voice);
-}
-
-int voice_finished(const labial_voice_t *voice)
-{
-    return voice->finished;
-}
-
-int voice_cancelled(const labial_voice_t *voice)
-{
-    return voice->cancelled;
-}
-
-int voice_ease(labial_voice_t *voice, int16_t *faps)
-{
-    return labial_voice_ease(voice, faps);
-}
+FLAT_RETURNS(int voice_visemes(const labial_voice_t *voice, uint8_t *shares), labial_voice_visemes(voice, shares))
+FLAT_RETURNS(uint32_t voice_next(const labial_voice_t *voice), voice->next)
+FLAT_RETURNS(int voice_done(labial_voice_t *voice), labial_voice_done(voice))
+FLAT_RETURNS(int voice_finished(const labial_voice_t *voice), voice->finished)
+FLAT_RETURNS(int voice_cancelled(const labial_voice_t *voice), voice->cancelled)
+FLAT_RETURNS(int voice_ease(labial_voice_t *voice, int16_t *faps), labial_voice_ease(voice, faps))
 
 void voice_counts(const labial_voice_t *voice, uint32_t *out)
 {

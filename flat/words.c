@@ -7,20 +7,10 @@
 
 #include "words_en.h"
 
-uint32_t words_size(void)
-{
-    return sizeof(labial_words_t);
-}
-
-uint32_t words_context_size(void)
-{
-    return sizeof(labial_words_context_t);
-}
-
-uint32_t words_own_size(unsigned count)
-{
-    return (uint32_t)(sizeof(labial_words_own_t) + count * sizeof(labial_words_entry_t));
-}
+FLAT_RETURNS(uint32_t words_size(void), sizeof(labial_words_t))
+FLAT_RETURNS(uint32_t words_context_size(void), sizeof(labial_words_context_t))
+FLAT_RETURNS(uint32_t words_own_size(unsigned count),
+             (uint32_t)(sizeof(labial_words_own_t) + count * sizeof(labial_words_entry_t)))
 
 const labial_words_own_t *words_own(void *memory, unsigned count, const char *packed)
 {
@@ -38,10 +28,7 @@ const labial_words_own_t *words_own(void *memory, unsigned count, const char *pa
     return own;
 }
 
-const char *words_label(unsigned phoneme)
-{
-    return labial_words_label(&words_en, phoneme);
-}
+FLAT_RETURNS(const char *words_label(unsigned phoneme), labial_words_label(&words_en, phoneme))
 
 int words_read(const labial_words_own_t *own, labial_words_context_t *context, const char *text, uint32_t size,
                uint8_t *out)
@@ -61,36 +48,21 @@ int words_read(const labial_words_own_t *own, labial_words_context_t *context, c
     return word.kind;
 }
 
-int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset)
-{
-    return labial_words_init(stream, &words_en, own, offset);
-}
+FLAT_RETURNS(int words_init(labial_words_t *stream, const labial_words_own_t *own, int32_t offset),
+             labial_words_init(stream, &words_en, own, offset))
 
 void words_pronounce(labial_words_t *stream, const labial_words_own_t *own)
 {
     (void)labial_words_pronounce(stream, own);
 }
 
-int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end)
-{
-    return labial_words_push(stream, text, size, start, end);
-}
-
-int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, const uint32_t *ends,
-                          unsigned count)
-{
-    return labial_words_push_characters(stream, text, size, start, ends, count);
-}
-
-int words_end(labial_words_t *stream)
-{
-    return labial_words_end(stream);
-}
-
-int words_restart(labial_words_t *stream)
-{
-    return labial_words_restart(stream);
-}
+FLAT_RETURNS(int words_push(labial_words_t *stream, const char *text, uint32_t size, uint32_t start, uint32_t end),
+             labial_words_push(stream, text, size, start, end))
+FLAT_RETURNS(int words_push_characters(labial_words_t *stream, const char *text, uint32_t size, uint32_t start,
+                                       const uint32_t *ends, unsigned count),
+             labial_words_push_characters(stream, text, size, start, ends, count))
+FLAT_RETURNS(int words_end(labial_words_t *stream), labial_words_end(stream))
+FLAT_RETURNS(int words_restart(labial_words_t *stream), labial_words_restart(stream))
 
 int words_next(labial_words_t *stream, uint32_t *out)
 {
