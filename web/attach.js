@@ -39,9 +39,7 @@ export class Head {
         this.#move = move;
     }
 
-    get source() {
-        return this.#source;
-    }
+    get source() { return this.#source; }
 
     set source(source) {
         if (source && typeof source.at !== "function") {

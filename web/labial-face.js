@@ -62,9 +62,7 @@ export class LabialFace extends LabialMouth {
         this.#internals.ariaLabel = NAMES[ALIASES[language] ?? language] ?? NAMES.en;
     }
 
-    get words() {
-        return this.#words;
-    }
+    get words() { return this.#words; }
 
     set words(words) {
         this.#words = Array.from(words ?? []);
@@ -72,9 +70,7 @@ export class LabialFace extends LabialMouth {
         this.#write(null);
     }
 
-    get caption() {
-        return this.#caption.textContent;
-    }
+    get caption() { return this.#caption.textContent; }
 
     set caption(text) {
         this.words = null;

@@ -7,153 +7,102 @@ import { CHANNELS, createMouth, follow } from "./mouth.js";
 const CLOSING = 200;
 const NO_FAPS = `a frame has ${CHANNELS.length} FAPs; what is drawn has the output "faps"`;
 
-/** Plays a track: any moment of it, interpolated between frames. */
-class TrackPlayer {
-    #track;
-
-    constructor(track) {
-        this.#track = track;
-        this.period = 1 / track.fps;
-    }
-
-    at(seconds) {
-        return this.#track.at(seconds);
-    }
-
-    over(seconds) {
-        return seconds >= this.#track.duration;
-    }
+/** Eases from a frame to the neutral face. */
+function easing(faps, milliseconds) {
+    const from = Array.from(faps);
+    const length = milliseconds / 1000;
+    const over = (seconds) => seconds >= length;
+    return { over, at: (seconds) => from.map((value) => (over(seconds) ? 0 : value * (1 - seconds / length))) };
 }
 
-/** Eases from a frame to the neutral face. */
-class Easing {
-    #from;
-    #seconds;
-
-    constructor(faps, milliseconds) {
-        this.#from = Array.from(faps);
-        this.#seconds = milliseconds / 1000;
-    }
-
-    at(seconds) {
-        return this.#from.map((value) => (this.over(seconds) ? 0 : value * (1 - seconds / this.#seconds)));
-    }
-
-    over(seconds) {
-        return seconds >= this.#seconds;
-    }
+/** Plays a track: any moment of it, interpolated between frames. */
+function playTrack(track) {
+    return {
+        kind: "track", period: 1 / track.fps, at: (seconds) => track.at(seconds), over: (seconds) => seconds >= track.duration,
+    };
 }
 
 /** Plays a stream: one frame after the other. */
-class StreamPlayer {
-    #stream;
-    #frame = new Array(CHANNELS.length).fill(0);
-    #shown = 0; // frames since time 0
-
-    constructor(stream) {
-        this.#stream = stream;
-        this.period = 1 / stream.fps;
-    }
-
-    /** Ticks until the due frame is ready, or until none comes; then the last one stays. Frames that come late catch up
-     * with a sound; without one what follows is as much later. */
-    at(seconds, audio) {
-        const due = Math.floor(seconds / this.period + 1e-6) + 1;
-        let underway = this.#stream.latency.delay;
-        while (this.#shown < due) {
-            const frame = this.#stream.tick();
-            if (frame) {
-                this.#frame = Array.from(frame);
-                this.#shown++;
-            } else if (this.#stream.done || this.#stream.starved || underway-- <= 0) {
-                break;
+function playStream(stream) {
+    const period = 1 / stream.fps;
+    let shown = new Array(CHANNELS.length).fill(0);
+    let count = 0; // frames since time 0
+    return {
+        kind: "stream", period,
+        /** Ticks until the due frame is ready, or until none comes; then the last one stays. Frames that come late catch up
+         * with a sound; without one what follows is as much later. */
+        at(seconds, audio) {
+            const due = Math.floor(seconds / period + 1e-6) + 1;
+            let underway = stream.latency.delay;
+            while (count < due) {
+                const frame = stream.tick();
+                if (frame) {
+                    shown = Array.from(frame);
+                    count++;
+                } else if (stream.done || stream.starved || underway-- <= 0) {
+                    break;
+                }
             }
-        }
-        if (!audio || audio.ended) this.#shown = due;
-        return this.#frame;
-    }
-
-    over() {
-        return this.#stream.done;
-    }
-
-    /** From now on, from time 0, the stream itself eases to the neutral face. */
-    cancel(milliseconds) {
-        this.#stream.cancel(milliseconds);
-        this.#shown = 0;
-    }
+            if (!audio || audio.ended) count = due;
+            return shown;
+        },
+        over: () => stream.done,
+        /** From now on, from time 0, the stream itself eases to the neutral face. */
+        cancel(milliseconds) {
+            stream.cancel(milliseconds);
+            count = 0;
+        },
+    };
 }
 
 /** Plays what is heard: the moment of its own clock, or that of the element's sound where it has none. */
-class HearingPlayer {
-    #hearing;
-    #begin = 0; // of the easing
-    #cancelled = false;
-
-    constructor(hearing) {
-        this.#hearing = hearing;
-        this.period = 1 / hearing.fps;
-    }
-
-    at(seconds) {
-        const now = this.#cancelled ? null : this.#hearing.now; // which stands if the sound has stopped
-        return this.#hearing.at(now ?? this.#begin + seconds);
-    }
-
-    over() {
-        return this.#cancelled && this.#hearing.done;
-    }
-
-    cancel(milliseconds) {
-        this.#begin = this.#hearing.now ?? this.#hearing.time;
-        this.#hearing.cancel(milliseconds, this.#begin);
-        this.#cancelled = true;
-    }
+function playHearing(hearing) {
+    let begin = 0; // of the easing
+    let cancelled = false;
+    return {
+        kind: "hearing", period: 1 / hearing.fps,
+        at(seconds) {
+            const now = cancelled ? null : hearing.now; // which stands if the sound has stopped
+            return hearing.at(now ?? begin + seconds);
+        },
+        over: () => cancelled && hearing.done,
+        cancel(milliseconds) {
+            begin = hearing.now ?? hearing.time;
+            hearing.cancel(milliseconds, begin);
+            cancelled = true;
+        },
+    };
 }
 
 /** Plays a voice that is followed: by its own clock, or by the element's sound where it has none. */
-class VoicePlayer {
-    #voice;
-    #clock;
-    #begin = 0; // of the easing
-    #length = Infinity; // of it, from the cancel on, seconds
-
-    constructor(voice) {
-        this.#voice = voice;
-        this.#clock = voice.clock !== null;
-        this.period = 1 / voice.fps;
-    }
-
-    at(seconds) {
-        return this.#clock ? this.#voice.at() : this.#voice.at(this.#begin + seconds);
-    }
-
-    /** The next utterance may have begun during the easing, and then the voice is not done at its end. */
-    over(seconds) {
-        return this.#length < Infinity && (this.#voice.done || seconds > this.#length);
-    }
-
-    cancel(milliseconds) {
-        this.#begin = Math.max(0, this.#voice.time);
-        this.#voice.cancel(milliseconds);
-        this.#length = milliseconds / 1000 + this.period;
-    }
-
-    /** Whether an utterance has begun since the cancel. */
-    get speaks() {
-        return this.#length < Infinity && !this.#voice.cancelled;
-    }
-
-    /** What plays after a cancel: the same voice, whose clock goes on. */
-    get next() {
-        return this.#clock ? new VoicePlayer(this.#voice) : null;
-    }
-
-    /** Seconds of the voice that are drawn, where it has a clock of its own. */
-    get position() {
-        return this.#clock ? this.#voice.number / this.#voice.fps : undefined;
-    }
+function playVoice(voice) {
+    const clock = voice.clock !== null;
+    const period = 1 / voice.fps;
+    let begin = 0; // of the easing
+    let length = Infinity; // of it, from the cancel on, seconds
+    return {
+        kind: "voice", period,
+        at: (seconds) => (clock ? voice.at() : voice.at(begin + seconds)),
+        /** The next utterance may have begun during the easing, and then the voice is not done at its end. */
+        over: (seconds) => length < Infinity && (voice.done || seconds > length),
+        cancel(milliseconds) {
+            begin = Math.max(0, voice.time);
+            voice.cancel(milliseconds);
+            length = milliseconds / 1000 + period;
+        },
+        /** Whether an utterance has begun since the cancel. */
+        get speaks() { return length < Infinity && !voice.cancelled; },
+        /** What plays after a cancel: the same voice, whose clock goes on. */
+        get next() { return clock ? playVoice(voice) : null; },
+        /** Seconds of the voice that are drawn, where it has a clock of its own. */
+        get position() { return clock ? voice.number / voice.fps : undefined; },
+    };
 }
+
+/** The properties that take a source: what plays it, and the call that it must have. */
+const SOURCES = Object.entries({
+    track: [playTrack, "at"], stream: [playStream, "tick"], hearing: [playHearing, "at"], voice: [playVoice, "at"],
+});
 
 /** What cancel() promises, and what resolves it. */
 function resting() {
@@ -183,6 +132,16 @@ export class LabialMouth extends Base {
     #late = false; // the sound had ended before the source was drawn first
     #asked = 0; // the next animation frame
     #rest = null; // of a source that is cancelled: the promise of cancel() and what resolves it
+
+    static {
+        for (const [kind, [play, call]] of SOURCES) {
+            Object.defineProperty(this.prototype, kind, {
+                configurable: true,
+                get() { return this.#player?.kind === kind ? this.#source : null; },
+                set(source) { this.#set(source, play, call); },
+            });
+        }
+    }
 
     constructor() {
         super();
@@ -225,50 +184,11 @@ export class LabialMouth extends Base {
     }
 
     /** Seconds of the source that are drawn. */
-    get position() {
-        return (this.audio ? undefined : this.#player?.position) ?? this.#position;
-    }
-
-    get track() {
-        return this.#player instanceof TrackPlayer ? this.#source : null;
-    }
-
-    set track(track) {
-        this.#set(track, TrackPlayer, "at");
-    }
-
-    get stream() {
-        return this.#player instanceof StreamPlayer ? this.#source : null;
-    }
-
-    set stream(stream) {
-        this.#set(stream, StreamPlayer, "tick");
-    }
-
-    get faps() {
-        return this.#faps;
-    }
-
-    get hearing() {
-        return this.#player instanceof HearingPlayer ? this.#source : null;
-    }
-
-    set hearing(hearing) {
-        this.#set(hearing, HearingPlayer, "at");
-    }
-
-    get voice() {
-        return this.#player instanceof VoicePlayer ? this.#source : null;
-    }
-
-    set voice(voice) {
-        this.#set(voice, VoicePlayer, "at");
-    }
+    get position() { return (this.audio ? undefined : this.#player?.position) ?? this.#position; }
+    get faps() { return this.#faps; }
 
     show(faps) {
-        if (faps.length !== CHANNELS.length) {
-            throw new TypeError(NO_FAPS);
-        }
+        if (faps.length !== CHANNELS.length) throw new TypeError(NO_FAPS);
         this.#faps.set(faps);
         this.#draw(this.#faps);
     }
@@ -283,7 +203,7 @@ export class LabialMouth extends Base {
             this.#leave();
             return Promise.resolve();
         }
-        this.#take(this.#source, eases ? this.#player : new Easing(this.#faps, milliseconds));
+        this.#take(this.#source, eases ? this.#player : easing(this.#faps, milliseconds));
         this.#rest = resting();
         return this.#rest.promise;
     }
@@ -295,16 +215,17 @@ export class LabialMouth extends Base {
     }
 
     /** Takes a source from its owner. */
-    #set(source, Player, call) {
+    #set(source, play, call) {
         if (source && typeof source[call] !== "function") {
             throw new TypeError(`the source is ${shown(source)}, which has no ${call}(): set what a promise resolves to`);
         }
-        this.#take(source, source && new Player(source));
+        this.#take(source, source && play(source));
     }
 
     #take(source, player) {
         if (source?.output !== undefined && source.output !== "faps") throw new TypeError(NO_FAPS);
-        this.#rested();
+        this.#rest?.resolve();
+        this.#rest = null;
         this.#source = source || null;
         this.#player = player || null;
         this.#listen();
@@ -332,11 +253,6 @@ export class LabialMouth extends Base {
         this.#asked = 0;
     }
 
-    #rested() {
-        this.#rest?.resolve();
-        this.#rest = null;
-    }
-
     #ask() {
         if (this.#asked || !this.#player || !this.isConnected) return;
         this.#asked = requestAnimationFrame((now) => this.#step(now));
@@ -347,7 +263,7 @@ export class LabialMouth extends Base {
         this.#asked = 0;
         if (this.#source?.closed) { // by its owner: the mouth comes to rest without it
             this.#source = null;
-            this.#player = new Easing(this.#faps, CLOSING);
+            this.#player = easing(this.#faps, CLOSING);
             this.#position = 0;
             this.#rest ??= resting();
         }

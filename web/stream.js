@@ -186,9 +186,7 @@ export class Stream {
         return count > 0;
     }
 
-    get exact() {
-        return this.#exact;
-    }
+    get exact() { return this.#exact; }
 
     set exact(exact) {
         this.#check(this.#labial.wasm.mouth_exact(this.#open(), exact ? 1 : 0));
@@ -200,33 +198,13 @@ export class Stream {
         return this.#labial.memory.bytes.slice(place, place + VISEMES);
     }
 
-    get number() {
-        return this.#number;
-    }
-
-    get time() {
-        return this.#number / this.fps;
-    }
-
-    get fps() {
-        return this.#fed.fps;
-    }
-
-    get output() {
-        return this.#output;
-    }
-
-    get model() {
-        return this.#model;
-    }
-
-    get done() {
-        return this.#state === DONE;
-    }
-
-    get starved() {
-        return this.#state === STARVED;
-    }
+    get number() { return this.#number; }
+    get time() { return this.#number / this.fps; }
+    get fps() { return this.#fed.fps; }
+    get output() { return this.#output; }
+    get model() { return this.#model; }
+    get done() { return this.#state === DONE; }
+    get starved() { return this.#state === STARVED; }
 
     get latency() {
         const at = this.#open();
@@ -237,9 +215,7 @@ export class Stream {
         return { frames, milliseconds: Math.round((1000 * frames) / this.fps), delay };
     }
 
-    get closed() {
-        return !this.#at;
-    }
+    get closed() { return !this.#at; }
 
     free() {
         if (!this.#at) return;

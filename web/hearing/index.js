@@ -233,54 +233,23 @@ class Hearing extends EventTarget {
         return this.#found.splice(0);
     }
 
-    get number() {
-        return this.#number;
-    }
-
-    get visemes() {
-        return this.#shares.slice();
-    }
-
-    get time() {
-        return this.#due(this.#number);
-    }
+    get number() { return this.#number; }
+    get visemes() { return this.#shares.slice(); }
+    get time() { return this.#due(this.#number); }
 
     get now() {
         const context = this.#context;
         return context && context.currentTime - (context.outputLatency || context.baseLatency || 0);
     }
 
-    get fps() {
-        return RATE;
-    }
-
-    get latency() {
-        return this.#latency;
-    }
-
-    get delay() {
-        return this.#delay;
-    }
-
-    get done() {
-        return this.#ended && this.#number + 1 >= this.#count;
-    }
-
-    get closed() {
-        return !this.#at;
-    }
-
-    get output() {
-        return this.#output;
-    }
-
-    get context() {
-        return this.#context;
-    }
-
-    get sound() {
-        return this.#tap?.sound ?? null;
-    }
+    get fps() { return RATE; }
+    get latency() { return this.#latency; }
+    get delay() { return this.#delay; }
+    get done() { return this.#ended && this.#number + 1 >= this.#count; }
+    get closed() { return !this.#at; }
+    get output() { return this.#output; }
+    get context() { return this.#context; }
+    get sound() { return this.#tap?.sound ?? null; }
 
     close() {
         if (!this.#at) return;
@@ -327,9 +296,7 @@ class Hearing extends EventTarget {
     // ---- Sound
 
     /** Where the next sample lies, in frames. */
-    get #position() {
-        return this.#base + (this.#pushed * RATE) / this.#sampleRate;
-    }
+    get #position() { return this.#base + (this.#pushed * RATE) / this.#sampleRate; }
 
     /** Silence up to where the next sound begins; of a long one only what lips are seen to do. */
     #follow(time) {

@@ -31,9 +31,7 @@ export class Messages {
     }
 
     /** What became of the messages so far. */
-    get stats() {
-        return { ...this.#stats };
-    }
+    get stats() { return { ...this.#stats }; }
 
     /** A list of { told, chained, joins, gap, utterance }: what a message tells. `told` lists { kind, items, key }.
      * Items are { text, start, end } in seconds; the texts of phonemes are labels of ARPABET. */

@@ -36,9 +36,7 @@ export class MessageReader {
         this.#format = format;
     }
 
-    get format() {
-        return this.#format;
-    }
+    get format() { return this.#format; }
 
     read(source) {
         const { Joint, Odd, SERVICES, entriesOf, serviceOf } = this.#timings;

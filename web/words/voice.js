@@ -220,37 +220,14 @@ export class Voice extends EventTarget {
         }
     }
 
-    get number() {
-        return this.#number;
-    }
-
-    get time() {
-        return this.number / this.fps + (this.#origin ?? 0);
-    }
-
-    get now() {
-        return this.#read(this.#clock);
-    }
-
-    get clock() {
-        return this.#given;
-    }
-
-    get output() {
-        return this.#output;
-    }
-
-    get fps() {
-        return this.#model.fps;
-    }
-
-    get done() {
-        return this.#closed || this.#lexicon.wasm.voice_done(this.#at) !== 0;
-    }
-
-    get cancelled() {
-        return !this.#closed && this.#lexicon.wasm.voice_cancelled(this.#at) !== 0;
-    }
+    get number() { return this.#number; }
+    get time() { return this.number / this.fps + (this.#origin ?? 0); }
+    get now() { return this.#read(this.#clock); }
+    get clock() { return this.#given; }
+    get output() { return this.#output; }
+    get fps() { return this.#model.fps; }
+    get done() { return this.#closed || this.#lexicon.wasm.voice_done(this.#at) !== 0; }
+    get cancelled() { return !this.#closed && this.#lexicon.wasm.voice_cancelled(this.#at) !== 0; }
 
     get stats() {
         this.#open();
@@ -262,9 +239,7 @@ export class Voice extends EventTarget {
         });
     }
 
-    get closed() {
-        return this.#closed;
-    }
+    get closed() { return this.#closed; }
 
     close() {
         this.#closed = true;
@@ -274,9 +249,7 @@ export class Voice extends EventTarget {
 
     // ---- Inside --------------------------------------------------------------------------------------------------
 
-    get #next() {
-        return this.#closed ? 0 : this.#lexicon.wasm.voice_next(this.#at);
-    }
+    get #next() { return this.#closed ? 0 : this.#lexicon.wasm.voice_next(this.#at); }
 
     #begin(after, utterance) {
         this.#checked(this.#lexicon.wasm.voice_begin(this.#at, after, this.#identity(utterance)));
