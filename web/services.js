@@ -10,7 +10,7 @@ export { Entry, LIMITS, documentsOf, entriesOf } from "./entries.js";
 /** A blank between words, or a gap between a service's phonemes, is a pause if it is longer, in seconds. */
 export const LONGEST_GAP = 0.15;
 /** Seconds that the last viseme lasts, of which only the beginning is told. */
-export const LAST_VISEME = 0.1;
+const LAST_VISEME = 0.1;
 /** No word or phoneme lasts longer, in seconds. */
 const LONGEST_ITEM = 3600;
 /** Times that differ by no more, in seconds, are the same. */
@@ -18,8 +18,9 @@ const ROUNDING = 0.001;
 /** Messages of which the times go on may overlap by as much, seconds. */
 const OVERLAP = 0.02;
 
-export const VISEMES = table.visemes;
-export const KINDS = ["sounds", "labels", "phonemes", ...Object.keys(VISEMES), "words", "characters"];
+const VISEMES = table.visemes;
+const KINDS = ["sounds", "labels", "phonemes", ...Object.keys(VISEMES), "words", "characters"];
+const isSpoken = (kind) => kind === "words" || kind === "characters";
 const VOWELS = new Set("AA AE AH AO AW AY EH ER EY IH IY OW OY UH UW".split(" "));
 
 // ---- Readers of the package labial
@@ -34,17 +35,16 @@ export const fromPolly = (source) => segmentsOf("polly", entriesOf(source));
 export function segmentsOf(name, entries, spoken = null) {
     const service = SERVICES[name];
     const odd = new Odd(true);
-    const kinds = spoken ? KINDS : KINDS.filter((kind) => kind !== "words" && kind !== "characters");
     const found = Object.fromEntries(KINDS.map((kind) => [kind, []]));
     for (const item of entries) {
         for (const told of service.read(item, odd)) found[told.kind].push([service.utterance(item), told]);
     }
-    const kind = kinds.find((one) => found[one].some(([, { items }]) => items.length));
+    const kind = KINDS.find((one) => (spoken || !isSpoken(one)) && found[one].some(([, { items }]) => items.length));
     const items = kind ? joined(found[kind], service.times) : [];
     const advice = service.advice && `: ${service.advice}`;
     if (!items.length) throw new LabialError(`${service.title} times nothing here${advice}`);
     if (VISEMES[kind]) return checked(shapes(items, kind));
-    return checked(kind === "words" || kind === "characters" ? spoken(items, kind) : phonemeSegments(items, kind));
+    return checked(isSpoken(kind) ? spoken(items, kind) : phonemeSegments(items, kind));
 }
 
 /** The items of messages one after the other. Where messages have keys, they are in the order of these, and the latest
@@ -438,17 +438,15 @@ class Service {
 export const SERVICES = {};
 for (const [name, row] of Object.entries(table.services)) SERVICES[name] = new Service(row);
 const NAMES = Object.keys(SERVICES);
-/** By the first name of a rule, the services that it may tell, by their numbers. */
+/** By the first name of a rule, the services that it may tell. */
 const BEGINS = new Map();
-NAMES.forEach((name, i) => {
-    for (const first of SERVICES[name].begins) BEGINS.set(first, [...(BEGINS.get(first) ?? []), i]);
-});
+for (const name of NAMES) for (const first of SERVICES[name].begins) BEGINS.set(first, [...(BEGINS.get(first) ?? []), name]);
 
 /** The name of the service that an object is of, or undefined. */
 export function serviceOf(item) {
     const found = new Set();
-    for (const name of item.plain.keys()) for (const i of BEGINS.get(name) ?? []) found.add(i);
-    return NAMES[[...found].sort((a, b) => a - b).find((i) => SERVICES[NAMES[i]].told(item))];
+    for (const first of item.plain.keys()) for (const name of BEGINS.get(first) ?? []) found.add(name);
+    return NAMES.find((name) => found.has(name) && SERVICES[name].told(item));
 }
 
 // ---- Segments
@@ -500,32 +498,26 @@ function phonemesOf(tokens) {
     return result;
 }
 
-/** Segments of visemes of which only the beginnings are told. */
+/** Segments of visemes, or of pairs of them, of which only the beginnings are told. */
 function shapes(marks, kind) {
-    return standIns(kind, marks.map(({ text }) => text)).map(({ first, last, phoneme }) => {
-        const end = last + 1 < marks.length ? marks[last + 1].start : marks[last].start + LAST_VISEME;
-        return { start: marks[first].start, end, label: phoneme, labels: "arpabet", line: marks[first].item.line };
-    });
-}
-
-/** The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for. */
-export function standIns(kind, names) {
     const phonemes = VISEMES[kind];
     const found = [];
-    for (let at = 0; at < names.length; at++) {
-        const joined = at + 1 < names.length ? phonemes[`${names[at]} ${names[at + 1]}`] : undefined;
-        found.push({ first: at, last: joined ? at + 1 : at, phoneme: joined || phonemes[names[at]] });
-        if (joined) at++;
+    for (let at = 0; at < marks.length; at++) {
+        const { text, start, item } = marks[at];
+        const pair = phonemes[`${text} ${marks[at + 1]?.text}`];
+        if (pair) at++;
+        const end = marks[at + 1]?.start ?? marks[at].start + LAST_VISEME;
+        found.push({ start, end, label: pair || phonemes[text], labels: "arpabet", line: item.line });
     }
-    const sounds = found.map(({ phoneme }) => phoneme);
-    found.forEach((item, i) => {
-        if (sounds[i] === "UW" && VOWELS.has(sounds[i + 1]) && sounds[i + 1] !== "UW") item.phoneme = "W";
+    const sounds = found.map(({ label }) => label);
+    found.forEach((segment, i) => {
+        if (sounds[i] === "UW" && VOWELS.has(sounds[i + 1]) && sounds[i + 1] !== "UW") segment.label = "W";
     });
     return found;
 }
 
 /** `segments`, or an error where times are late, turned round or overlap, or where there are none. */
-export function checked(segments) {
+function checked(segments) {
     if (!segments.length) throw new LabialError("no segments");
     let previous = -Infinity;
     return segments.map(({ line, ...segment }, i) => {

@@ -1,9 +1,8 @@
 // The elements as a page uses them, over a stand-in for the page: clocks and captions, sources that are closed while they
 // are drawn, interruptions. tests/python/test_browser_elements.py has real pages.
 import assert from "node:assert/strict";
-import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, folder } from "./setup.mjs";
+import { Labial, hearing, heard, load, wait, words } from "./setup.mjs";
 
 /** As much of a page as the elements ask for. */
 class Node {
@@ -39,19 +38,20 @@ Object.assign(globalThis, {
     cancelAnimationFrame: (number) => pictures.delete(number),
 });
 
-const { LabialFace } = await import(pathToFileURL(`${folder}/labial-face.js`));
-const { attach } = await import(pathToFileURL(`${folder}/attach.js`));
-const { heard } = await import(pathToFileURL(`${folder}/index.js`));
-const labial = await Labial.load({
-    hearing: () => import(pathToFileURL(`${folder}-hearing/index.js`)),
-    words: () => import(pathToFileURL(`${folder}-words/index.js`)),
-});
+const { LabialFace } = await load("/labial-face.js");
+const { attach } = await load("/attach.js");
+const labial = await Labial.load({ hearing, words });
 
 /** A face that draws nothing, on the page. */
 class Face extends LabialFace {
     static create = () => () => {};
+    ended = 0; // events
     constructor() {
         super();
+        this.addEventListener("ended", () => { this.ended++; });
+        this.insert();
+    }
+    insert() {
         this.isConnected = true;
         this.connectedCallback();
     }
@@ -95,13 +95,13 @@ function contextOf() {
 
 /** A hearing of a hum that opens the mouth, with an AudioContext. */
 async function hearingOf(context = null, options = {}) {
-    const hearing = await labial.hear(null, { sampleRate: 16000, context, ...options });
-    hearing.push(Int16Array.from({ length: 16000 }, (_, i) => {
+    const one = await labial.hear(null, { sampleRate: 16000, context, ...options });
+    one.push(Int16Array.from({ length: 16000 }, (_, i) => {
         let tone = 0;
         for (let k = 1; k < 20; k++) tone += Math.sin((2 * Math.PI * 120 * k * i) / 16000) / k;
         return 4000 * tone;
     }), 0);
-    return hearing;
+    return one;
 }
 
 function streamOf() {
@@ -111,8 +111,10 @@ function streamOf() {
     return stream;
 }
 
-/** Lets promises and Date.now() go on. */
-const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+const trackOf = (seconds = 1, options = {}) => labial.render([{ start: 0, end: seconds, label: "AA" }], options);
+/** Sources that do not end: the property, what makes one, and what closes it. */
+const SOURCES = [["voice", voiceOf, "close"], ["hearing", () => hearingOf(contextOf()), "close"], ["hearing", hearingOf, "close"],
+    ["stream", streamOf, "free"]];
 
 test("captions follow the clock of the voice", async () => {
     const words = "one two three four".split(" ").map((text, i) => ({ text, start: 0.5 * i, end: 0.5 * i + 0.4 }));
@@ -145,7 +147,7 @@ test("captions go with the source, and stay for a second behind the end of one w
     const face = new Face();
     const text = () => face.caption;
     face.words = [{ text: "Go", start: 0, end: 0.5 }, { text: "now.", start: 0.5, end: 0.9 }];
-    face.track = labial.render([{ start: 0, end: 1, label: "AA" }]);
+    face.track = trackOf();
     let ended = 0;
     face.addEventListener("ended", () => { ended = face.position; });
     play(face, 1.8);
@@ -161,7 +163,7 @@ test("captions go with the source, and stay for a second behind the end of one w
     assert.equal(text(), "");
     play(face, 0.3);
     assert.ok(rests(face) && text() === "");
-    face.track = labial.render([{ start: 0, end: 1, label: "AA" }]);
+    face.track = trackOf();
     play(face, 0.3);
     assert.equal(text(), "Go");
     face.track = null;
@@ -170,9 +172,9 @@ test("captions go with the source, and stay for a second behind the end of one w
 
 test("a source of another output is refused where it is set, and the one before goes on", async () => {
     const face = new Face();
-    const track = face.track = labial.render([{ start: 0, end: 1, label: "AA" }]);
+    const track = face.track = trackOf();
     const others = {
-        track: labial.render([{ start: 0, end: 1, label: "AA" }], { output: "arkit" }),
+        track: trackOf(1, { output: "arkit" }),
         stream: labial.stream({ output: "oculus" }),
         hearing: await hearingOf(null, { output: "vrm" }),
         voice: await voiceOf(null, { output: "arkit" }),
@@ -191,7 +193,7 @@ test("a source of another output is refused where it is set, and the one before 
 test("behind the end of its sound a track is drawn as heard() has it, and a source set then goes by the clock", ({ mock }) => {
     mock.method(performance, "now", () => now);
     const face = new Face();
-    const track = labial.render([{ start: 0, end: 2, label: "AA" }]);
+    const track = trackOf(2);
     const audio = face.audio = { currentTime: 1.5, ended: false, paused: true };
     face.track = track;
     play(face, 0.1);
@@ -211,13 +213,9 @@ test("behind the end of its sound a track is drawn as heard() has it, and a sour
 });
 
 test("a source that is closed while it is drawn leaves a mouth at rest, for the next track", async () => {
-    const cases = [["voice", voiceOf, "close"], ["hearing", () => hearingOf(contextOf()), "close"], ["hearing", hearingOf, "close"],
-        ["stream", streamOf, "free"]];
-    for (const [name, make, ends] of cases) {
+    for (const [name, make, ends] of SOURCES) {
         const face = new Face();
         const source = await make();
-        let ended = 0;
-        face.addEventListener("ended", () => { ended++; });
         face[name] = source;
         play(face, 0.5);
         const open = wide(face);
@@ -228,8 +226,8 @@ test("a source that is closed while it is drawn leaves a mouth at rest, for the 
         const most = play(face, 0.1);
         assert.ok(wide(face) > 0.1 * open && most < 0.2 * open, `${name} eases: ${most} of ${open}`);
         play(face, 0.3);
-        assert.ok(rests(face) && face[name] === null && ended === 0, name);
-        face.track = labial.render([{ start: 0, end: 1, label: "AA" }]);
+        assert.ok(rests(face) && face[name] === null && face.ended === 0, name);
+        face.track = trackOf();
         play(face, 0.5);
         assert.ok(wide(face) > 60);
         face[name] = source; // which is closed
@@ -239,8 +237,7 @@ test("a source that is closed while it is drawn leaves a mouth at rest, for the 
 });
 
 test("a source may be closed before a cancel and during it", async () => {
-    for (const [name, make, ends] of [["voice", voiceOf, "close"], ["hearing", () => hearingOf(contextOf()), "close"],
-        ["stream", streamOf, "free"]]) {
+    for (const [name, make, ends] of SOURCES) {
         for (const when of ["before", "during"]) {
             const face = new Face();
             const source = await make();
@@ -310,8 +307,7 @@ test("a face that leaves the page during a cancel, or is cancelled outside of it
         assert.equal(face.voice, voice);
         voice.begin((now - begin) / 1000);
         voice.push("AA", 0, 9);
-        face.isConnected = true;
-        face.connectedCallback();
+        face.insert();
         play(face, 0.6);
         assert.ok(wide(face) > 60);
         face.remove();
@@ -320,18 +316,11 @@ test("a face that leaves the page during a cancel, or is cancelled outside of it
 
 test("a face that has left the page is nothing to its voice, and is again on its return", async () => {
     const face = new Face();
-    let ended = 0;
-    face.addEventListener("ended", () => { ended++; });
     const voice = await voiceOf();
     face.voice = voice;
-    face.remove();
-    voice.dispatchEvent(new Event("ended"));
-    assert.equal(ended, 0);
-    face.isConnected = true;
-    face.connectedCallback();
-    voice.dispatchEvent(new Event("ended"));
-    assert.equal(ended, 1);
-    face.voice = null;
-    voice.dispatchEvent(new Event("ended"));
-    assert.equal(ended, 1);
+    for (const [change, ended] of [[() => face.remove(), 0], [() => face.insert(), 1], [() => { face.voice = null; }, 1]]) {
+        change();
+        voice.dispatchEvent(new Event("ended"));
+        assert.equal(face.ended, ended);
+    }
 });

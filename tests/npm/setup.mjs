@@ -8,10 +8,15 @@ import { binary as blob } from "../../web/layout.mjs";
 /** The folder of the package, which the build names. */
 export const folder = resolve(process.env.LABIAL_NPM_PACKAGE ?? "build/wasm/npm");
 
-export const { Labial, LabialError, timings } = await import(pathToFileURL(`${folder}/index.js`));
+/** A module of the packages, such as "/mouth.js" or "-words/index.js". */
+export const load = (path) => import(pathToFileURL(`${folder}${path}`));
+/** The packages that labial is given. */
+export const [hearing, words] = ["-hearing", "-words"].map((name) => () => load(`${name}/index.js`));
+
+export const { Labial, LabialError, heard, timings } = await load("/index.js");
 /** The laughter model, from the package beside it. */
-export const { default: laughter } = await import(pathToFileURL(`${folder}-laughter/index.js`));
-export const { unpack } = await import(pathToFileURL(`${folder}/unpack.js`));
+export const { default: laughter } = await load("-laughter/index.js");
+export const { unpack } = await load("/unpack.js");
 export { crc32 } from "../../web/layout.mjs";
 
 /** The repository's file of this path. */
@@ -70,6 +75,17 @@ export function binary(mouth, model) {
 
 /** The frames as arrays. */
 export const rows = (frames) => Array.from(frames, (faps) => [...faps]);
+export const REST = new Array(13).fill(0);
+export const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+/** Puts the names of a class's members that its types declare beside those that its prototype has, and `own`. */
+export function assertTyped(file, name, prototype, own = []) {
+    const inherited = /^(constructor|(add|remove)EventListener|(connected|disconnected|adopted)Callback)$/;
+    const [types] = readFileSync(`${folder}/${file}.d.ts`, "utf8").match(new RegExp(`export class ${name}\\b[^]*?\\n\\}`));
+    const typed = [...types.matchAll(/^    (?:get |set |readonly )?(\w+)(?:<[^(]*>)?[(:]/gm)].map(([, found]) => found);
+    const has = Object.getOwnPropertyNames(prototype).concat(own);
+    const [declared, found] = [typed, has].map((names) => [...new Set(names)].filter((one) => !inherited.test(one)).sort());
+    assert.deepEqual(declared, found, name);
+}
 
 /** Each call must be refused by an error of one of `kinds`, in a sentence of its own of at most `most` characters. */
 export function refused(calls, most = 200, kinds = ["LabialError", "TypeError", "RangeError"]) {

@@ -3,13 +3,11 @@
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { pathToFileURL } from "node:url";
 import test from "node:test";
-import { Labial, LabialError, folder, refused, source } from "./setup.mjs";
+import { Labial, LabialError, assertTyped, folder, load, words as given, refused, source, wait } from "./setup.mjs";
 
-const { fromEspeak } = await import(pathToFileURL(`${folder}/espeak.js`));
-const load = () => import(pathToFileURL(`${folder}-words/index.js`));
-const labial = await Labial.load({ words: load });
+const { fromEspeak } = await load("/espeak.js");
+const labial = await Labial.load({ words: given });
 /** The memory of the words' module. */
 let memory;
 const { instantiate } = WebAssembly;
@@ -24,16 +22,6 @@ const SAID = [{ text: "Maybe", start: 0.1, end: 0.42 }, { text: "people", start:
     { text: "in", start: 0.9 }, { text: "1984.", start: 1.1, end: 1.9 }, { text: "Hum", start: 2.5, end: 3 }];
 const numbers = (digits) => (digits === "1984" ? "the year of Orwell" : "many");
 const labels = (segments) => segments.map(({ label }) => label || "-").join(" ");
-
-test("words become segments that render() takes, without gaps", () => {
-    const segments = words.wordTimings(SAID);
-    segments.forEach(({ start, end, labels }, i) => {
-        assert.equal(start, i ? segments[i - 1].end : 0);
-        assert.ok(end > start && labels === "arpabet");
-    });
-    assert.match(labels(segments), /^- M EY B IY P IY P AH L IH N N AY N T IY N EY T IY F AO R - HH AH M$/);
-    assert.equal(labial.render(segments, { exact: true }).length, 150);
-});
 
 test("numbers are written out by the caller, once each", () => {
     const asked = [];
@@ -116,17 +104,14 @@ test("words of scripts without blanks end at punctuation, and where one probably
 });
 
 test("messages are read as they arrive", () => {
-    const spelt = (text, from) => ({ chars: [...text], charStartTimesMs: [...text].map((_, i) => from + 100 * i), charDurationsMs: [...text].map(() => 100) });
-    const messages = [{ audio: "AAAA", alignment: null }, { alignment: spelt("Hi y", 0) }, '{"isFinal": null}', { alignment: spelt("ou", 0) }];
     const reader = words.reader();
-    const found = messages.map((message) => reader.read(message));
+    assert.deepEqual(reader.read({ audio: "AAAA", alignment: null }), { phonemes: [], words: [], characters: [] });
+    const alignment = { chars: ["o", "u"], charStartTimesMs: [0, 100], charDurationsMs: [100, 100] };
+    for (const from of [0, 0.2]) {
+        const found = reader.read({ alignment }).characters.map(({ text, start }) => [text, start]);
+        assert.deepEqual(found, [["o", from], ["u", from + 0.1]]);
+    }
     assert.equal(reader.format, "elevenlabs");
-    assert.deepEqual(found[0], { phonemes: [], words: [], characters: [] });
-    assert.deepEqual(found[3].characters.map(({ text, start }) => [text, start]), [["o", 0.4], ["u", 0.5]]);
-    const characters = found.flatMap((one) => one.characters);
-    const times = ["start", "end"].map((name) => characters.map((one) => one[name]));
-    const together = words.characterTimings(characters.map(({ text }) => text), ...times);
-    assert.deepEqual(words.read(messages.filter((one) => typeof one !== "string"), { format: "elevenlabs" }), together);
     const fish = words.reader({ format: "fish" });
     const event = (text) => ({ chunk_seq: 3, chunk_audio_offset_sec: 1, alignment: { segments: [{ text, start: 0, end: 1 }] } });
     assert.deepEqual(fish.read(event("May")), { phonemes: [], words: [{ text: "May", start: 1, end: 2 }], characters: [], chunk: 3 });
@@ -199,7 +184,7 @@ test("streams that nobody holds are given back", async () => {
     for (let round = 0; round < 20; round++) {
         for (let i = 0; i < 100; i++) use();
         globalThis.gc();
-        await new Promise((done) => setTimeout(done));
+        await wait(0);
     }
     assert.ok(memory.buffer.byteLength < 2000 * 300 * 5, `${memory.buffer.byteLength} bytes`);
 });
@@ -207,10 +192,10 @@ test("streams that nobody holds are given back", async () => {
 test("words are loaded once, and asked for in a sentence", async () => {
     assert.equal(await labial.words(), words);
     const missing = { name: "LabialError", message: /^words are not loaded: Labial\.load\(.*labial-words/ };
-    for (const given of [undefined, () => null, { hear() {} }]) {
-        await assert.rejects((await Labial.load({ words: given })).words(), missing);
+    for (const wrong of [undefined, () => null, { hear() {} }]) {
+        await assert.rejects((await Labial.load({ words: wrong })).words(), missing);
     }
-    const other = await Labial.load({ words: Promise.resolve({ default: { default: await load() } }) });
+    const other = await Labial.load({ words: Promise.resolve({ default: { default: await given() } }) });
     assert.notEqual(await other.words(), words);
     assert.deepEqual((await other.words()).wordTimings(SAID), words.wordTimings(SAID));
 });
@@ -277,11 +262,7 @@ test("a source map leads from each line of a script to the line that was written
 test("types and what words, streams and readers have are the same", () => {
     for (const [name, one, own] of [["Words", words, ["formats"]], ["WordStream", words.stream(), []],
         ["MessageReader", words.reader(), []], ["Voice", words.voice(), []]]) {
-        const types = source("web/index.d.ts").match(new RegExp(`export class ${name}\\b[^]*?\\n\\}`))[0];
-        const typed = [...types.matchAll(/^    (?:readonly )?(\w+)(?:<[^(]*>)?[(:]/gm)].map(([, found]) => found);
-        const has = Object.getOwnPropertyNames(Object.getPrototypeOf(one)).concat(own).filter((found) => found !== "constructor");
-        const inherited = ["constructor", "addEventListener", "removeEventListener"];
-        assert.deepEqual(typed.filter((found) => !inherited.includes(found)).sort(), has.sort());
+        assertTyped("index", name, Object.getPrototypeOf(one), own);
         assert.deepEqual(Object.keys(one), own);
     }
 });
