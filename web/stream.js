@@ -11,14 +11,9 @@ const ARTICULATION_MAX = 200;
 const WAITING_MAX = 65536;
 /** Ticks without a frame after which a stream without room for a model will never have any. */
 const PATIENCE = 64;
-const OK = 0;
-const STARVED = 2;
-const DONE = 3;
-const ERROR_STATE = -5;
-const ERROR_DURATION = -7;
-const ERROR_FULL = -8;
-const ERROR_FRAME_RATE = -9;
-const ERROR_MODELS = -10;
+/** Results (labial_result_t). */
+const [OK, STARVED, DONE] = [0, 2, 3];
+const [ERROR_STATE, ERROR_DURATION, ERROR_FULL, ERROR_FRAME_RATE, ERROR_MODELS] = [-5, -7, -8, -9, -10];
 
 const abandoned = new FinalizationRegistry(({ memory, at, size }) => memory.release(at, size));
 
@@ -72,8 +67,7 @@ export class Stream {
     // ---- In ---------------------------------------------------------------------------------------------------------
 
     push(label, milliseconds, { labels = this.#settings.labels, hint } = {}) {
-        this.#open();
-        if (this.#closed) throw this.#labial.failure(ERROR_STATE);
+        this.#takes();
         const { nearest } = this.#settings;
         const phoneme = this.#labial.phoneme(label, { model: this.#model, labels, hint, nearest });
         const asked = this.#asked + amount(milliseconds, "milliseconds");
@@ -86,8 +80,7 @@ export class Stream {
     }
 
     laugh(seconds, intensity = 0.5, seed = this.#laughs + 1) {
-        this.#open();
-        if (this.#closed) throw this.#labial.failure(ERROR_STATE);
+        this.#takes();
         const before = this.#model;
         this.use("laughter");
         try {
@@ -164,26 +157,26 @@ export class Stream {
     *[Symbol.iterator]() {
         for (;;) {
             const at = this.#open();
-            if (!this.#pull(at)) return;
+            if (!this.#advance(at, () => this.#check(this.#labial.next(at)))) return;
             this.#number++;
             const frame = this.#shown(at);
             yield this.#output === "faps" ? frame.slice() : { ...frame };
         }
     }
 
-    /** Takes the next frame, by no clock; returns whether there is one. */
-    #pull(at) {
+    /** Feeds the library until `take` returns how many frames it took, by no clock; 0 when there are no more. */
+    #advance(at, take) {
         let before, count;
         let idle = 0;
         do {
             before = this.#waiting.length - this.#head;
             this.#feed(at);
-            count = this.#check(this.#labial.next(at));
+            count = take();
             idle = this.#waiting.length - this.#head < before ? 0 : idle + 1;
         } while (!count && (idle === 0 || (this.#refused && idle < PATIENCE)));
         this.#state = this.#labial.wasm.mouth_state(at);
         if (!count && this.#refused) throw this.#labial.failure(ERROR_MODELS);
-        return count > 0;
+        return count;
     }
 
     get exact() { return this.#exact; }
@@ -229,15 +222,7 @@ export class Stream {
     /** All frames that are ready; calls `add` with pieces, which are valid only during the call. Not for users. */
     drain(add) {
         const at = this.#open();
-        let before, frames;
-        let idle = 0;
-        do {
-            before = this.#waiting.length - this.#head;
-            this.#feed(at);
-            frames = this.#labial.run(at, add);
-            idle = frames > 0 || this.#waiting.length - this.#head < before ? 0 : idle + 1;
-        } while (idle === 0 || (this.#refused && idle < PATIENCE));
-        if (this.#refused) throw this.#labial.failure(ERROR_MODELS);
+        while (this.#advance(at, () => this.#labial.run(at, add)));
     }
 
     // ---- Inside -----------------------------------------------------------------------------------------------------
@@ -245,6 +230,12 @@ export class Stream {
     #open() {
         if (!this.#at) throw new LabialError("the stream was freed");
         return this.#at;
+    }
+
+    /** That it takes phonemes. */
+    #takes() {
+        this.#open();
+        if (this.#closed) throw this.#labial.failure(ERROR_STATE);
     }
 
     #check(result) {

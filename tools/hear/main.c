@@ -39,7 +39,7 @@ typedef struct {
 static const hear_model_t models[] = { LABIAL_BUNDLED_HEARING };
 #define MODELS ((unsigned)(sizeof models / sizeof models[0]))
 
-/* Numbers are places in the lists of what there is; a rate or channels of 0 were not given. */
+/* Numbers are places in the lists of what there is; a rate or channels of 0 are not given. */
 typedef struct {
     const char *sound;
     unsigned to, model, rate, channels;
@@ -136,6 +136,10 @@ static int read_options(int argc, char **argv, options_t *options)
         return options_wrong("labial-hear", "--rate and --channels go with -, not with", options->sound);
     if (options->classes && options->to_given)
         return options_wrong("labial-hear", "--to selects a format of motion and does not go with", "--classes");
+    if (!options->rate)
+        options->rate = DEFAULT_RATE;
+    if (!options->channels)
+        options->channels = 1;
     return 0;
 }
 
@@ -233,13 +237,13 @@ static int hear_all(hear_t *hear)
         if (flush(hear) != 0)
             return EXIT_INPUT;
     } while ((size_t)read == count);
-    if (all == 0 && wav_has_header(&hear->wav))
+    if (all == 0 && hear->wav.place > 0)
         return failed(hear, "the sound is empty: it has no samples");
     if (hear->wav.cut > 0) {
-        const double promised = wav_promised(&hear->wav);
+        const double promised = wav_seconds(&hear->wav, hear->wav.size);
         char what[80];
         (void)snprintf(what, sizeof what, "the file is cut off: %.2f of %.2f s are there",
-                       promised - wav_missing(&hear->wav), promised);
+                       promised - wav_seconds(&hear->wav, hear->wav.cut), promised);
         warning(hear, what);
     }
     (void)labial_hear_end(&hear->stream);
@@ -323,18 +327,15 @@ static int run(hear_t *hear, const options_t *options)
 
 static int open_and_run(hear_t *hear, const options_t *options)
 {
-    hear->sound = options->sound;
-    if (strcmp(options->sound, "-") == 0) {
-        hear->sound = "standard input";
-        const int opened = wav_open_or_raw(&hear->wav, stdin, options->rate ? options->rate : DEFAULT_RATE,
-                                           options->channels ? options->channels : 1u);
-        return opened == 0 ? run(hear, options) : failed(hear, hear->wav.message);
-    }
-    FILE *in = fopen(options->sound, "rb");
+    const int piped = strcmp(options->sound, "-") == 0;
+    FILE *const in = piped ? stdin : fopen(options->sound, "rb");
+    hear->sound = piped ? "standard input" : options->sound;
     if (!in)
         return failed(hear, "cannot open");
-    const int status = wav_open(&hear->wav, in) == 0 ? run(hear, options) : failed(hear, hear->wav.message);
-    fclose(in);
+    const int opened = wav_open(&hear->wav, in, piped ? options->rate : 0, options->channels);
+    const int status = opened == 0 ? run(hear, options) : failed(hear, hear->wav.message);
+    if (!piped)
+        fclose(in);
     return status;
 }
 

@@ -31,28 +31,6 @@ static uint32_t little_endian(const unsigned char *at, unsigned bytes)
 
 /* ---- Samples ----------------------------------------------------------------------------------------------------- */
 
-static int16_t of_8_bits(const unsigned char *at, int *wrong)
-{
-    (void)wrong;
-    return (int16_t)((*at - 128) * 256);
-}
-
-static int16_t of_16_bits(const unsigned char *at, int *wrong)
-{
-    (void)wrong;
-    return (int16_t)(uint16_t)little_endian(at, 2);
-}
-
-static int16_t of_24_bits(const unsigned char *at, int *wrong)
-{
-    return of_16_bits(at + 1, wrong);
-}
-
-static int16_t of_32_bits(const unsigned char *at, int *wrong)
-{
-    return of_16_bits(at + 2, wrong);
-}
-
 static int16_t of_number(double number, int *wrong)
 {
     const double scaled = 32767.0 * number;
@@ -63,47 +41,61 @@ static int16_t of_number(double number, int *wrong)
     return (int16_t)(scaled < -32768.0 ? -32768.0 : scaled > 32767.0 ? 32767.0 : scaled + (scaled < 0.0 ? -0.5 : 0.5));
 }
 
-static int16_t of_float(const unsigned char *at, int *wrong)
+static double floating(const unsigned char *at, unsigned bytes)
 {
-    const uint32_t bits = little_endian(at, 4);
+    const uint32_t low = little_endian(at, 4);
     float number;
-    memcpy(&number, &bits, sizeof number);
-    return of_number((double)number, wrong);
-}
-
-static int16_t of_double(const unsigned char *at, int *wrong)
-{
-    const uint64_t bits = (uint64_t)little_endian(at + 4, 4) << 32 | little_endian(at, 4);
-    double number;
-    memcpy(&number, &bits, sizeof number);
-    return of_number(number, wrong);
+    double wide;
+    if (bytes == 8) {
+        const uint64_t bits = (uint64_t)little_endian(at + 4, 4) << 32 | low;
+        memcpy(&wide, &bits, sizeof wide);
+        return wide;
+    }
+    memcpy(&number, &low, sizeof number);
+    return (double)number;
 }
 
 /* ITU-T G.711. */
-static int16_t of_a_law(const unsigned char *at, int *wrong)
+static int of_a_law(unsigned byte)
 {
-    const unsigned code = *at ^ 0x55u, segment = code >> 4 & 7u;
+    const unsigned code = byte ^ 0x55u, segment = code >> 4 & 7u;
     const int step = (int)((code & 15u) << 4) + 8;
     const int size = segment == 0 ? step : (step + 256) * (1 << (segment - 1));
-    (void)wrong;
-    return (int16_t)(code & 0x80u ? size : -size);
+    return code & 0x80u ? size : -size;
 }
 
-static int16_t of_mu_law(const unsigned char *at, int *wrong)
+static int of_mu_law(unsigned byte)
 {
-    const unsigned code = ~(unsigned)*at;
+    const unsigned code = ~byte;
     const int size = (((int)(code & 15u) << 3) + 132) * (1 << (code >> 4 & 7u)) - 132;
-    (void)wrong;
-    return (int16_t)(code & 0x80u ? -size : size);
+    return code & 0x80u ? -size : size;
 }
 
-static const struct {
-    unsigned encoding, bits;
-    wav_sample_fn sample;
-} kinds[] = {
-    { PCM, 8, of_8_bits },      { PCM, 16, of_16_bits },     { PCM, 24, of_24_bits }, { PCM, 32, of_32_bits },
-    { FLOATING, 32, of_float }, { FLOATING, 64, of_double }, { A_LAW, 8, of_a_law },  { MU_LAW, 8, of_mu_law },
-};
+/* A sample of a file as 16 bits; `wrong` is set where it is no number. */
+static int16_t sample_of(const wav_t *wav, const unsigned char *at, int *wrong)
+{
+    switch (wav->encoding) {
+    case FLOATING:
+        return of_number(floating(at, wav->bytes), wrong);
+    case A_LAW:
+        return (int16_t)of_a_law(*at);
+    case MU_LAW:
+        return (int16_t)of_mu_law(*at);
+    default: /* PCM */
+        return wav->bytes == 1 ? (int16_t)((*at - 128) * 256)
+                               : (int16_t)(uint16_t)little_endian(at + wav->bytes - 2, 2);
+    }
+}
+
+static int is_known(unsigned encoding, unsigned bits)
+{
+    static const unsigned kinds[][2] = { { PCM, 8 },       { PCM, 16 },      { PCM, 24 },  { PCM, 32 },
+                                         { FLOATING, 32 }, { FLOATING, 64 }, { A_LAW, 8 }, { MU_LAW, 8 } };
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (kinds[i][0] == encoding && kinds[i][1] == bits)
+            return 1;
+    return 0;
+}
 
 /* ---- The file ------------------------------------------------------------------------------------------------------ */
 
@@ -140,20 +132,16 @@ static int read_format(wav_t *wav, uint32_t size)
         return failed(wav, "its format has less than 16 bytes");
     if (read_all(wav, format, taken, "ends within its format") != 0)
         return -1;
-    unsigned encoding = little_endian(format, 2);
     const unsigned bits = little_endian(format + 14, 2);
-    if (encoding == EXTENSIBLE && size >= FORMAT_BYTES)
-        encoding = little_endian(format + 24, 2);
+    wav->encoding = little_endian(format, 2);
+    if (wav->encoding == EXTENSIBLE && size >= FORMAT_BYTES)
+        wav->encoding = little_endian(format + 24, 2);
     wav->channels = little_endian(format + 2, 2);
     wav->rate = little_endian(format + 4, 4);
-    wav->sample = NULL;
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        if (kinds[i].encoding == encoding && kinds[i].bits == bits)
-            wav->sample = kinds[i].sample;
-    if (!wav->sample) {
+    if (!is_known(wav->encoding, bits)) {
         (void)snprintf(wav->message, sizeof wav->message,
                        "has samples of %u bits in encoding %u, not PCM, floating point, A-law or mu-law", bits,
-                       encoding);
+                       wav->encoding);
         return -1;
     }
     wav->bytes = bits / 8u;
@@ -165,24 +153,6 @@ static int read_format(wav_t *wav, uint32_t size)
         return failed(wav, "its format contradicts itself: bytes of a sample");
     return skip(wav, size - taken) == 0 && skip(wav, size & 1u) == 0 ? 0 : -1;
 }
-
-/* Reads the first bytes. Returns whether they are those of a WAV file. */
-static int read_head(wav_t *wav, FILE *in)
-{
-    memset(wav, 0, sizeof *wav);
-    wav->in = in;
-    wav->last = (unsigned)fread(wav->head, 1, WAV_HEAD, in);
-    return wav->last == WAV_HEAD && memcmp(wav->head, "RIFF", 4) == 0 && memcmp(wav->head + 8, "WAVE", 4) == 0;
-}
-
-/* Whether the first bytes are those of a file whose sizes have 64 bits, for sounds beyond 4 GB. */
-static int has_wide_sizes(const wav_t *wav)
-{
-    return wav->last == WAV_HEAD && memcmp(wav->head + 8, "WAVE", 4) == 0 &&
-           (memcmp(wav->head, "RF64", 4) == 0 || memcmp(wav->head, "BW64", 4) == 0);
-}
-
-static const char wide_sizes[] = "is an RF64 or BW64 file; convert it to a WAV file of less than 4 GB";
 
 /* Reads the chunks behind the first bytes. */
 static int read_chunks(wav_t *wav)
@@ -210,23 +180,23 @@ static int read_chunks(wav_t *wav)
     }
 }
 
-int wav_open(wav_t *wav, FILE *in)
+int wav_open(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
 {
-    if (read_head(wav, in))
-        return read_chunks(wav);
-    return failed(wav, has_wide_sizes(wav) ? wide_sizes : "is not a WAV file");
-}
-
-int wav_open_or_raw(wav_t *wav, FILE *in, uint32_t rate, unsigned channels)
-{
-    if (read_head(wav, in))
-        return read_chunks(wav);
-    if (has_wide_sizes(wav))
-        return failed(wav, wide_sizes);
+    memset(wav, 0, sizeof *wav);
+    wav->in = in;
+    wav->last = (unsigned)fread(wav->head, 1, WAV_HEAD, in);
+    if (wav->last == WAV_HEAD && memcmp(wav->head + 8, "WAVE", 4) == 0) {
+        if (memcmp(wav->head, "RIFF", 4) == 0)
+            return read_chunks(wav);
+        if (memcmp(wav->head, "RF64", 4) == 0 || memcmp(wav->head, "BW64", 4) == 0) /* sizes of 64 bits */
+            return failed(wav, "is an RF64 or BW64 file; convert it to a WAV file of less than 4 GB");
+    }
+    if (rate == 0)
+        return failed(wav, "is not a WAV file");
     wav->rate = rate;
     wav->channels = channels;
     wav->bytes = 2;
-    wav->sample = of_16_bits;
+    wav->encoding = PCM;
     wav->endless = 1;
     return 0;
 }
@@ -260,7 +230,7 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
             wav->left = 0;
         }
         for (size_t i = 0; i < got / size * wav->channels; i++)
-            samples[read * wav->channels + i] = wav->sample(bytes + wav->bytes * i, &wrong);
+            samples[read * wav->channels + i] = sample_of(wav, bytes + wav->bytes * i, &wrong);
         if (wrong)
             return failed(wav, "a sample is not finite");
         read += got / size;
@@ -270,22 +240,7 @@ long wav_read(wav_t *wav, int16_t *samples, size_t count)
     return (long)read;
 }
 
-int wav_has_header(const wav_t *wav)
-{
-    return wav->place > 0;
-}
-
-static double seconds(const wav_t *wav, uint32_t bytes)
+double wav_seconds(const wav_t *wav, uint32_t bytes)
 {
     return (double)bytes / (double)(wav->bytes * wav->channels) / (double)wav->rate;
-}
-
-double wav_promised(const wav_t *wav)
-{
-    return seconds(wav, wav->size);
-}
-
-double wav_missing(const wav_t *wav)
-{
-    return seconds(wav, wav->cut);
 }
