@@ -12,7 +12,7 @@
  * A line of output is 20 ms: the number of the sample that is heard, 1 if the mouth speaks, the packet's bytes, and the
  * servos' pulses in microseconds.
  */
-#define _POSIX_C_SOURCE 200112L
+#define _POSIX_C_SOURCE 200809L
 
 #include <arpa/inet.h>
 #include <errno.h>
@@ -24,7 +24,6 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/time.h>
-#include <unistd.h>
 
 #include "labial/beside.h"
 
@@ -43,7 +42,7 @@ static const uint8_t limits[OUTPUTS] = { LABIAL_BESIDE_CHANGE(100, 1400, 1900), 
 
 static labial_beside_t lips;
 static uint8_t memory[LABIAL_BESIDE_SIZE(OUTPUTS, FRAMES)];
-static int server;
+static FILE *server;
 static uint32_t rate, received, heard; /* samples since the beginning */
 static int speaks;                     /* utterances whose sound is still to come */
 static int cancelling;                 /* sound is dropped until the server has heard of it */
@@ -59,47 +58,32 @@ static void fail(const char *what, const char *why)
 
 static void take(uint8_t *data, size_t size)
 {
-    while (size > 0) {
-        const ssize_t got = read(server, data, size);
-        if (got == 0)
-            fail("the server has gone", "it closed the connection");
-        if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK))
-            fail("the server has gone", "it sends nothing");
-        if (got < 0)
-            fail("the server has gone", strerror(errno));
-        data += got;
-        size -= (size_t)got;
-    }
+    if (fread(data, 1, size, server) == size)
+        return;
+    if (feof(server))
+        fail("the server has gone", "it closed the connection");
+    fail("the server has gone", errno == EAGAIN || errno == EWOULDBLOCK ? "it sends nothing" : strerror(errno));
 }
 
 static void give(const char *line)
 {
-    size_t left = strlen(line);
-    while (left > 0) {
-        const ssize_t sent = write(server, line, left);
-        if (sent < 0)
-            fail("the server has gone", strerror(errno));
-        line += sent;
-        left -= (size_t)sent;
-    }
+    if (dprintf(fileno(server), "%s", line) < 0)
+        fail("the server has gone", strerror(errno));
 }
 
 /* Connects to a port of this computer. */
 static void connect_to(unsigned port)
 {
-    struct timeval patience = { 0, 0 };
-    struct sockaddr_in to;
+    const struct timeval patience = { .tv_sec = PATIENCE };
+    const struct sockaddr_in to = { .sin_family = AF_INET,
+                                    .sin_port = htons((uint16_t)port),
+                                    .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+    const int connection = socket(AF_INET, SOCK_STREAM, 0);
     char where[16];
-    memset(&to, 0, sizeof to);
-    patience.tv_sec = PATIENCE;
-    to.sin_family = AF_INET;
-    to.sin_port = htons((uint16_t)port);
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     (void)snprintf(where, sizeof where, "port %u", port);
     signal(SIGPIPE, SIG_IGN);
-    if ((server = socket(AF_INET, SOCK_STREAM, 0)) < 0 ||
-        setsockopt(server, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
-        connect(server, (struct sockaddr *)&to, sizeof to) != 0)
+    if (connection < 0 || setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience) != 0 ||
+        connect(connection, (const struct sockaddr *)&to, sizeof to) != 0 || !(server = fdopen(connection, "r")))
         fail(where, strerror(errno));
 }
 

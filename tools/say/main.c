@@ -71,13 +71,6 @@ static const char *label_set_name(unsigned number)
     return number < sizeof label_sets / sizeof label_sets[0] ? label_sets[number].name : NULL;
 }
 
-static int read_percent(const char *value, unsigned *percent)
-{
-    if (option_number(value, LABIAL_ARTICULATION_MAX, percent) != 0)
-        return options_wrong("labial-say", "--articulation is a whole number from 0 to 200, not", value);
-    return 0;
-}
-
 static int read_options(int argc, char **argv, options_t *options)
 {
     for (int i = 1; i < argc; i++) {
@@ -94,7 +87,8 @@ static int read_options(int argc, char **argv, options_t *options)
         } else if ((value = option_value("--labels", argc, argv, &i)) != NULL) {
             result = choose("labial-say", "--labels", value, label_set_name, &options->labels);
         } else if ((value = option_value("--articulation", argc, argv, &i)) != NULL) {
-            result = read_percent(value, &options->articulation);
+            if (option_number(value, LABIAL_ARTICULATION_MAX, &options->articulation) != 0)
+                result = options_wrong("labial-say", "--articulation is a whole number from 0 to 200, not", value);
         } else if (strcmp(argv[i], "--exact") == 0) {
             options->exact = 1;
         } else if ((value = option_value("--model", argc, argv, &i)) != NULL) {
@@ -164,10 +158,7 @@ static int run(say_t *say, const options_t *options)
     (void)labial_articulation(&say->mouth.stream, options->articulation);
     (void)labial_exact(&say->mouth.stream, options->exact);
     say->labels = label_sets[options->labels].labels;
-    if (read_timings(say, options) == 0)
-        return mouth_end(&say->mouth) == 0 ? 0 : EXIT_INPUT;
-    mouth_drop(&say->mouth);
-    return EXIT_INPUT;
+    return mouth_end(&say->mouth, read_timings(say, options) == 0) == 0 ? 0 : EXIT_INPUT;
 }
 
 int main(int argc, char **argv)

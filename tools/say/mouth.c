@@ -160,8 +160,12 @@ int mouth_laugh(mouth_t *mouth, const char *where, uint32_t milliseconds, unsign
     return flush(mouth);
 }
 
-int mouth_end(mouth_t *mouth)
+int mouth_end(mouth_t *mouth, int complete)
 {
+    if (!complete) {
+        (void)frames_finish(&mouth->frames, 0);
+        return -1;
+    }
     if (mouth->has_sound && !mouth->has_speech)
         fprintf(stderr, "%s: warning: every sound is shorter than %u ms: is the unit of time right?\n", mouth->program,
                 SHORT_SOUND);
@@ -172,9 +176,4 @@ int mouth_end(mouth_t *mouth)
     if (frames_finish(&mouth->frames, result >= 0) != 0)
         return failed(mouth, "", "cannot write the motion");
     return result < 0 ? -1 : 0;
-}
-
-void mouth_drop(mouth_t *mouth)
-{
-    (void)frames_finish(&mouth->frames, 0);
 }

@@ -43,7 +43,7 @@ typedef struct {
 } mouth_t;
 
 /* Prepares a mouth whose frames go to `out` in one of the formats of frames.h. Returns 0, or -1 after the error was
- * printed. mouth_end() or mouth_drop() release what it owns. */
+ * printed. mouth_end() releases what it owns. */
 int mouth_init(mouth_t *mouth, const char *program, const mouth_voice_t *voice, FILE *out, unsigned format);
 
 /*
@@ -57,10 +57,8 @@ int mouth_say(mouth_t *mouth, const char *where, const char *label, labial_label
 /* Adds a laugh of `intensity`, 0 to LABIAL_LAUGH_FULL. Returns as mouth_say() does. */
 int mouth_laugh(mouth_t *mouth, const char *where, uint32_t milliseconds, unsigned intensity);
 
-/* Writes the remaining frames and ends. Returns 0, or -1 after the error was printed. */
-int mouth_end(mouth_t *mouth);
-
-/* Ends without what is not yet written, after an error. */
-void mouth_drop(mouth_t *mouth);
+/* Writes the remaining frames and ends. Returns 0, or -1 after the error was printed. Unless `complete`, after an error,
+ * it ends without what is not yet written, and returns -1. */
+int mouth_end(mouth_t *mouth, int complete);
 
 #endif

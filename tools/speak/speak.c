@@ -40,7 +40,7 @@ int speak_options(int argc, char **argv, const char *program, const char *usage,
         const char *value = i + 1 < argc ? argv[i + 1] : "";
         if (strcmp(argv[i], "--help") == 0) {
             fputs(usage, stdout);
-            return 0 + 1;
+            return 1;
         }
         if (strcmp(argv[i], "--to") == 0) {
             if (choose(program, "--to", value, frames_format_name, &options->to) != 0)
@@ -171,10 +171,7 @@ int speak_end(speak_t *speak, int complete)
         result = speak_sound(speak, silence, sizeof silence / sizeof silence[0]);
     if (result == 0)
         result = speak_phoneme(speak, NULL, speak_time(speak));
-    if (result == 0)
-        result = mouth_end(&speak->mouth);
-    else
-        mouth_drop(&speak->mouth);
+    result = mouth_end(&speak->mouth, result == 0);
     if (result == 0)
         result = fseek(speak->sound, 0, SEEK_SET) == 0 ? write_header(speak) : sound_failed(speak, "cannot seek");
     if (fclose(speak->sound) != 0 && result == 0)
