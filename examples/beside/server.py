@@ -120,21 +120,19 @@ class Service:
 
 
 class Toy:
-    """One connection."""
+    """One connection, which begins with the rate and the face at rest."""
 
     def __init__(self, writer: asyncio.StreamWriter, service: Service) -> None:
         self._writer, self._service, self._lips = writer, service, service.lips()
         self._turn = asyncio.Lock()  # of an utterance
         self._sent = 0  # samples since the beginning, at any time
         self._heard_by = 0.0  # when the toy has played them, seconds of the loop's clock
+        self.send(b"R", struct.pack("<I", service.rate))
+        self.send(b"L", self._lips.hello())
 
-    def _send(self, kind: bytes, data: bytes = b"") -> None:
+    def send(self, kind: bytes, data: bytes = b"") -> None:
+        """A message."""
         self._writer.write(kind + struct.pack("<H", len(data)) + data)
-
-    def hello(self) -> None:
-        """The rate and the face at rest."""
-        self._send(b"R", struct.pack("<I", self._service.rate))
-        self._send(b"L", self._lips.hello())
 
     async def say(self, text: str) -> None:
         """Sends an utterance when the ones before it have been sent."""
@@ -145,11 +143,7 @@ class Toy:
                 complain("server", error)
             except ConnectionError:
                 return  # its end is seen where lines are read
-            self.done()
-
-    def done(self) -> None:
-        """Says that an utterance is over, or is not spoken at all."""
-        self._send(b"E")
+            self.send(b"E")
 
     async def _send_utterance(self, spoken: Spoken) -> None:
         """Sends sound in blocks, each after the packets of lips that begin before its end."""
@@ -161,16 +155,16 @@ class Toy:
             await self._in_time()
             end = self._sent + block // 2
             while packets and packets[0].frame * rate < end * 50:
-                self._send(b"L", packets.pop(0).data)
-            self._send(b"A", sound)
+                self.send(b"L", packets.pop(0).data)
+            self.send(b"A", sound)
             self._sent = end
             await self.drain()
         for packet in packets:
-            self._send(b"L", packet.data)
+            self.send(b"L", packet.data)
 
     def cancel(self) -> None:
         """Tells the toy to drop what it has not played."""
-        self._send(b"L", self._lips.cancel(self._sent, self._service.rate))
+        self.send(b"L", self._lips.cancel(self._sent, self._service.rate))
         self._heard_by = 0.0
 
     async def _in_time(self) -> None:
@@ -196,7 +190,6 @@ async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, serv
         if service.toys > service.connections:
             raise LabialError(f"there are {service.connections} toys already")
         toy = Toy(writer, service)
-        toy.hello()
         while line := await next_line(reader, service.idle, lambda: bool(speaking)):
             text = line.decode("utf-8", "replace").strip()
             if text == "stop":
@@ -208,7 +201,7 @@ async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, serv
                 speaking.add(task)
                 task.add_done_callback(speaking.discard)
             elif text.startswith("say "):
-                toy.done()
+                toy.send(b"E")  # it is not spoken at all
             await toy.drain()
     except (LabialError, ConnectionError) as error:
         complain("server", error)
