@@ -86,13 +86,8 @@ export class Memory {
         }
     }
 
-    int16(at, count) {
-        return new Int16Array(this.#memory.buffer, at, count);
-    }
-
-    int32(at, count) {
-        return new Int32Array(this.#memory.buffer, at, count);
-    }
+    int16(at, count) { return new Int16Array(this.#memory.buffer, at, count); }
+    int32(at, count) { return new Int32Array(this.#memory.buffer, at, count); }
 
     /** The text at an address, up to its zero: UTF-8, of which a message may have cut the last character. */
     text(at) {

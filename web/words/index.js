@@ -74,19 +74,8 @@ class Words {
         return segmentsOf(lexicon, wordsOfCharacters(items, begins, finishes), options);
     }
 
-    read(source, options) {
-        return readTimings(this.#lexicon, source, options);
-    }
-
-    reader(options) {
-        return new MessageReader(this.#lexicon, options);
-    }
-
-    stream(options) {
-        return new WordStream(this.#lexicon, options);
-    }
-
-    voice(options) {
-        return new Voice(this.#lexicon, options);
-    }
+    read(source, options) { return readTimings(this.#lexicon, source, options); }
+    reader(options) { return new MessageReader(this.#lexicon, options); }
+    stream(options) { return new WordStream(this.#lexicon, options); }
+    voice(options) { return new Voice(this.#lexicon, options); }
 }

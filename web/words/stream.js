@@ -117,17 +117,9 @@ export class WordStream {
         this.#place++;
     }
 
-    end() {
-        this.#line.end();
-    }
-
-    restart() {
-        this.#line.restart();
-    }
-
-    take() {
-        return this.#line.take();
-    }
+    end() { this.#line.end(); }
+    restart() { this.#line.restart(); }
+    take() { return this.#line.take(); }
 
     free() {
         abandoned.unregister(this);
