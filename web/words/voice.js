@@ -151,17 +151,18 @@ export class Voice extends EventTarget {
         if (utterance != null && typeof utterance !== "string") {
             throw new TypeError(`the utterance is ${this.#tools.shown(utterance)}, not its name`);
         }
+        let after = 0;
         if (this.#origin === null) {
             this.#origin = at == null ? this.#clock.read() : this.#moment(at);
-            if (this.cancelled || utterance != null) this.#begin(0, utterance);
+            if (!this.cancelled && utterance == null) return;
         } else {
             const heard = this.#clock ? (this.#clock.read() ?? 0) : Infinity;
             const shown = this.#next / this.fps;
             if (heard - this.#origin < shown - 1 / this.fps) this.#origin = heard - shown; // the clock was set back
-            const after = at == null ? -1 : this.#moment(at) - this.#origin;
+            after = at == null ? -1 : this.#moment(at) - this.#origin;
             if (at != null && after < 0) throw new RangeError(`${at} s is before the first sound, ${this.#origin} s`);
-            this.#begin(after, utterance);
         }
+        this.#checked(this.#lexicon.wasm.voice_begin(this.#at, after, this.#identity(utterance)));
     }
 
     delay(seconds) {
@@ -186,7 +187,9 @@ export class Voice extends EventTarget {
     // ---- What is shown
 
     played(seconds = this.now) {
-        return this.#poses(seconds, (faps) => this.#form(faps));
+        return this.#poses(seconds, (faps) => {
+            return this.#output === "faps" ? Int16Array.from(faps) : this.#labial.convert(faps, this.#output, {}, this.#sounds);
+        });
     }
 
     at(seconds = this.now) {
@@ -251,18 +254,9 @@ export class Voice extends EventTarget {
 
     get #next() { return this.#closed ? 0 : this.#lexicon.wasm.voice_next(this.#at); }
 
-    #begin(after, utterance) {
-        this.#checked(this.#lexicon.wasm.voice_begin(this.#at, after, this.#identity(utterance)));
-    }
-
     #read(clock) {
         if (!clock) throw new this.#tools.LabialError("the voice has no clock: give it one, or say the time");
         return clock.read();
-    }
-
-    /** A frame in the voice's output. */
-    #form(faps) {
-        return this.#output === "faps" ? Int16Array.from(faps) : this.#labial.convert(faps, this.#output, {}, this.#sounds);
     }
 
     #open() {
