@@ -94,6 +94,12 @@ div{{display:inline-block;width:{WIDTH}px;height:{HEIGHT}px}}</style>
         return image.convert("RGB")
 
 
+def cut(image: Image.Image, number: int) -> Image.Image:
+    """A frame of such a picture."""
+    left, top = number % ROW * WIDTH, number // ROW * HEIGHT
+    return image.crop((left, top, left + WIDTH, top + HEIGHT))
+
+
 def voices(head: str, models: Sequence[str], output: str) -> None:
     """Draws a sheet: two rows for each of the models, NAME=MODEL."""
     import numpy as np
@@ -126,9 +132,7 @@ def voices(head: str, models: Sequence[str], output: str) -> None:
         top = LINE + row * (2 * CELL + LINE)
         text.text((4, top + 2), name, fill="black")
         for column in range(count):
-            number = row * count + column
-            left, upper = number % ROW * WIDTH, number // ROW * HEIGHT
-            drawn = mouths.crop((left + 45, upper + 95, left + 155, upper + 205))
+            drawn = cut(mouths, row * count + column).crop((45, 95, 155, 205))
             shown = heads.crop((round(column * wide), round((row + 1) * high - wide), round((column + 1) * wide),
                                 round((row + 1) * high)))
             for line, cell in enumerate((drawn, shown)):
@@ -142,10 +146,7 @@ def main(page: str, output: str) -> None:
     frames = frames_of(Path(page))[::STEP]
     with tempfile.TemporaryDirectory() as folder:
         sheet = picture(frames, Path(folder))
-    pictures = []
-    for number in range(len(frames)):
-        left, top = number % ROW * WIDTH, number // ROW * HEIGHT
-        pictures.append(sheet.crop((left, top, left + WIDTH, top + HEIGHT)))
+    pictures = [cut(sheet, number) for number in range(len(frames))]
     pictures[0].save(output, save_all=True, append_images=pictures[1:], duration=20 * STEP, loop=0, quality=50,
                      method=6)  # fmt: skip
     print(f"{output}: {len(frames)} frames, {os.path.getsize(output)} bytes")

@@ -153,10 +153,7 @@ int servos_shown(servos_face_t *face)
 {
     if (passed == ended)
         return 0;
-    for (unsigned servo = 0; servo < SERVOS_COUNT; servo++) {
-        face->lengths[servo] = queue[passed % SERVOS_QUEUE].lengths[servo];
-        face->measured[servo] = queue[passed % SERVOS_QUEUE].measured[servo];
-    }
+    *face = queue[passed % SERVOS_QUEUE];
     passed++;
     return 1;
 }
@@ -173,9 +170,5 @@ uint32_t servos_clock(void)
 
 servos_counts_t servos_counts(void)
 {
-    servos_counts_t counts;
-    counts.periods = periods;
-    counts.interrupts = interrupts;
-    counts.late = late;
-    return counts;
+    return (servos_counts_t){ periods, interrupts, late };
 }

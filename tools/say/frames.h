@@ -1,20 +1,7 @@
 /*
- * frames.h - frames written as text.
- *
- *   csv       a header `time,fap3,fap16,...`, then a line per frame, written as it comes: seconds with three decimals
- *             and the 13 channels in FAP units.
- *   fap       MPEG-4 text: a header `2.1 NAME FPS NFRAMES`, then two lines per frame: a mask of 68 zeros and ones, and
- *             the frame's number followed by the value of each FAP whose mask is one, here the 23 of inner and outer
- *             lips, and the 5 of the tongue where sounds are known. The header needs the number of frames, so they are kept in memory and written by frames_finish().
- *   livelink  what Epic's Live Link Face records: `Timecode,BlendShapeCount,` and 61 columns, ARKit's blendshapes from
- *             0 to 1 and rotations; those that lips and jaw do not move are 0. Timecodes are HH:MM:SS:FF.000.
- *   jsonl     a JSON object per line: `frame`, `time` in seconds, `faps` as of csv, `arkit` with the blendshapes that
- *             lips and jaw move, from 0 to 1.
- *   A face's name, one of those of faces.h
- *             a JSON object per line: `frame`, `time` in seconds, and one with the face's name that holds its weights
- *             from 0 to 1, such as those of ARKit's blendshapes, VRM's five mouths or the 15 visemes of Oculus LipSync.
- *
- * The formats are one list, in frames.c, to which the faces are added.
+ * frames.h - frames written as text, in the formats that docs/avatar.md describes. They are one list, in frames.c, to
+ * which the faces of faces.h are added. The header of `fap` needs the number of frames, so they are kept in memory and
+ * written by frames_finish().
  */
 #ifndef LABIAL_EXAMPLE_FRAMES_H
 #define LABIAL_EXAMPLE_FRAMES_H
@@ -60,7 +47,8 @@ void frames_help(FILE *out);
  * valid. frames_finish() releases what the writer owns. */
 void frames_init(frames_t *frames, FILE *out, unsigned format, const char *name, unsigned frames_per_second);
 
-/* Appends a frame with the shares of its sounds (labial/visemes.h), null where they are not known. Failures are remembered and returned by frames_flush() and frames_finish(). */
+/* Appends a frame with the shares of its sounds (labial/visemes.h), null where they are not known. Failures are
+ * remembered and returned by frames_flush() and frames_finish(). */
 void frames_put(frames_t *frames, const int16_t faps[LABIAL_CHANNELS], const uint8_t *shares);
 
 /* Sends what is written so far on its way. Returns 0, or -1 when writing failed or memory was short. */
