@@ -132,13 +132,6 @@ static int score_read(score_t *score, const char *path, const score_voice_t *voi
     return 0;
 }
 
-static void score_release(score_t *score)
-{
-    free(score->phonemes);
-    free(score->laughs);
-    memset(score, 0, sizeof *score);
-}
-
 /* ---- The performance as JSON ------------------------------------------------------------------------------------- */
 
 static void on_frame(void *user, const int16_t faps[LABIAL_CHANNELS])
@@ -197,13 +190,9 @@ int main(int argc, char **argv)
         fputs("usage: labial-demo sentence.flite laugh.lab laughing.flite\n", stderr);
         return 2;
     }
-    int result = score_read(&score, argv[1], &speech);
-    if (result == 0)
-        result = score_read(&score, argv[2], &laughter);
-    if (result == 0)
-        result = score_read(&score, argv[3], &speech);
-    if (result == 0)
-        result = perform(&score);
-    score_release(&score);
-    return result == 0 ? 0 : 1;
+    const int result = score_read(&score, argv[1], &speech) != 0 || score_read(&score, argv[2], &laughter) != 0 ||
+                       score_read(&score, argv[3], &speech) != 0 || perform(&score) != 0;
+    free(score.phonemes);
+    free(score.laughs);
+    return result;
 }

@@ -119,36 +119,32 @@ int main(int argc, char **argv)
 {
     static run_t run;
     speak_options_t options;
-    int result = speak_options(argc, argv, "labial-say-espeak", usage, &options);
+    const int result = speak_options(argc, argv, "labial-say-espeak", usage, &options);
     if (result != 0)
         return result - 1;
+    int failed = 1;
     const int rate =
         espeak_Initialize(AUDIO_OUTPUT_SYNCHRONOUS, 0, NULL,
                           espeakINITIALIZE_PHONEME_EVENTS | espeakINITIALIZE_PHONEME_IPA | espeakINITIALIZE_DONT_EXIT);
     const char *voice = options.voice ? options.voice : "en-us";
     if (rate <= 0) {
         fprintf(stderr, "labial-say-espeak: espeak-ng finds no data: install the Debian package espeak-ng-data\n");
-        result = -1;
     } else if (select_voice(voice) != 0) {
         fprintf(stderr, "labial-say-espeak: espeak-ng has no voice '%s'\n", voice);
-        result = -1;
-    } else if (speak_begin(&run.speak, &options, (unsigned)rate, LABIAL_LABELS_IPA) != 0) {
-        result = -1;
-    } else {
+    } else if (speak_begin(&run.speak, &options, (unsigned)rate, LABIAL_LABELS_IPA) == 0) {
         closure_init(&run.closure, (unsigned)rate);
         espeak_SetSynthCallback(on_sound);
         if (espeak_Synth(options.text, strlen(options.text) + 1, 0, POS_CHARACTER, 0, espeakCHARS_UTF8, NULL, &run) !=
                 EE_OK ||
             espeak_Synchronize() != EE_OK) {
             fprintf(stderr, "labial-say-espeak: espeak-ng could not synthesise this text\n");
-            result = -1;
+            run.failed = 1;
         }
-        if (result == 0 && !run.failed)
+        if (!run.failed)
             run.failed = say(&run, speak_time(&run.speak)) != 0;
-        if (speak_end(&run.speak, result == 0 && !run.failed) != 0)
-            result = -1;
+        failed = speak_end(&run.speak, !run.failed) != 0;
     }
     (void)espeak_Terminate();
     free(options.text);
-    return result == 0 ? 0 : 1;
+    return failed;
 }

@@ -57,7 +57,11 @@ export class Messages {
     expectTimings() {
         if (!this.#stats.messages || this.#stats.told || this.#hasWarned) return;
         this.#hasWarned = true;
-        this.#complain();
+        const { SERVICES } = this.#tools.timings;
+        const service = SERVICES[this.#format ?? this.#silent];
+        const problem = service ? `${service.title} has to be asked for them${service.advice && `: ${service.advice}`}`
+            : `none is of a known service (${Object.keys(SERVICES).join(", ")})`;
+        console.warn(`labial: ${this.#stats.messages} messages told no timings: ${problem}`);
     }
 
     /** The objects of a message. Bytes that are not JSON are sound. */
@@ -149,14 +153,6 @@ export class Messages {
         this.#hasToldOfOthers = true;
         console.warn(`labial: message ${this.#stats.messages} seems to be of ${other.title} and is not read, since earlier `
             + `ones are of ${SERVICES[format].title}: name the format, or use a voice for each service`);
-    }
-
-    #complain() {
-        const { SERVICES } = this.#tools.timings;
-        const service = SERVICES[this.#format ?? this.#silent];
-        const problem = service ? `${service.title} has to be asked for them${service.advice && `: ${service.advice}`}`
-            : `none is of a known service (${Object.keys(SERVICES).join(", ")})`;
-        console.warn(`labial: ${this.#stats.messages} messages told no timings: ${problem}`);
     }
 }
 
