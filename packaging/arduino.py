@@ -87,17 +87,11 @@ def _included(file: Path) -> List[Path]:
 def write(source: Source, folder: Path) -> None:
     """Lays the library out in `folder`."""
     src = folder / "src"
-    (src / "labial").mkdir(parents=True)
-    (src / "lib").mkdir()
-    for path in source.public:
-        shutil.copyfile(path, src / "labial" / path.name)
-    for path in [*source.private, *source.sources]:
-        shutil.copyfile(path, src / "lib" / path.name)
-    for model in source.models:
-        for path in model.files:
-            shutil.copyfile(path, src / path.name)
-    for path in source.words:
-        shutil.copyfile(path, src / path.name)
+    for target, paths in ((src / "labial", source.public), (src / "lib", [*source.private, *source.sources]),
+                          (src, source.tables)):
+        target.mkdir(parents=True, exist_ok=True)
+        for path in paths:
+            shutil.copyfile(path, target / path.name)
     for name, text in (("LICENSE", source.licence()),
                        ("src/Labial.h", umbrella(source)),
                        ("library.properties", properties(source)),

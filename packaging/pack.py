@@ -84,7 +84,7 @@ def _amalgamate(source: Source, folder: Path) -> None:
     write_text(folder / "labial.h", _joined(source, source.public, "Labial's public headers", []))
     text = _joined(source, source.sources, "Labial's code", source.public)
     write_text(folder / "labial.c", '#include "labial.h"\n' + text)
-    for path in [*(path for model in source.models for path in model.files), *source.words]:
+    for path in source.tables:
         text = re.sub(r'^#include "labial/[^"]+"$', '#include "labial.h"', path.read_text("utf-8"), flags=re.MULTILINE)
         write_text(folder / path.name, text)
     write_text(folder / "LICENSE", source.licence())

@@ -114,10 +114,11 @@ class Source:
             raise PackError(f"{folder}: holds no exported model")
         self.models = [Model(path) for path in headers]
         self.words = sorted((ROOT / "lib" / "words").glob("*.[ch]"))
+        self.tables = [path for model in self.models for path in model.files] + self.words
 
     def headers(self) -> List[Path]:
         """The headers of the models and of the tables of words, which name the data that these were made from."""
-        return [model.files[0] for model in self.models] + [path for path in self.words if path.suffix == ".h"]
+        return [path for path in self.tables if path.suffix == ".h"]
 
     def licence(self) -> str:
         """The text of a package's LICENSE: that of the code, then the attributions of the models and words."""
