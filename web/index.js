@@ -38,23 +38,18 @@ const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 export class Model {
     constructor(labial, at, names, range) {
         const { wasm } = labial;
-        this.at = at;
-        this.names = names;
-        this.range = range; // of the memory: all that its tables are in
-        this.phonemes = wasm.model_phonemes(at);
-        this.silence = wasm.model_silence(at);
-        this.fps = wasm.model_fps(at);
-        this.stride = wasm.model_stride(at);
-        Object.freeze(this);
+        Object.freeze(Object.assign(this, {
+            at, names, range, // of the memory: all that its tables are in
+            phonemes: wasm.model_phonemes(at), silence: wasm.model_silence(at), fps: wasm.model_fps(at),
+            stride: wasm.model_stride(at),
+        }));
     }
 }
 
 /** A face from labial.rig(). */
 export class Rig {
     constructor(name, outputs) {
-        this.name = name;
-        this.outputs = Object.freeze(outputs);
-        Object.freeze(this);
+        Object.freeze(Object.assign(this, { name, outputs: Object.freeze(outputs) }));
     }
 }
 

@@ -14,12 +14,8 @@ export class Track {
 
     constructor(labial, output, fps, { faps, visemes }) {
         this.#labial = labial;
-        this.output = output;
-        this.fps = fps;
-        this.faps = faps;
-        this.visemes = visemes;
-        this.length = faps.length / CHANNELS;
-        this.duration = this.length / fps;
+        const length = faps.length / CHANNELS;
+        Object.assign(this, { output, fps, faps, visemes, length, duration: length / fps });
     }
 
     at(seconds) {
