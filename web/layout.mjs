@@ -1,13 +1,13 @@
 // The layout of a model's tables in the module's memory (labial_model_t of include/labial/model.h, for 32-bit targets),
-// for // builds and tests.
+// for builds and tests.
 
 /** Offsets in labial_model_t: of the number of channels, of the first table's pointer and of the channels'. */
 const [COUNT, TABLES, DESCRIPTORS] = [20, 36, 80];
 /** Bytes of the number of channels and of their sources, and of the header of a binary model. */
 const [SOURCES, HEADER] = [14, 48];
 
-/** The tables in the order of a binary model (include/labial/blob.h): name, address, bytes, bytes of a row. */
-export function tables(buffer, model) {
+/** The tables in the order of a binary model (include/labial/blob.h): name, address, bytes. */
+function tables(buffer, model) {
     const view = new DataView(buffer);
     const half = (offset) => view.getUint16(model + offset, true);
     const byte = (offset) => view.getUint8(model + offset);
@@ -20,7 +20,7 @@ export function tables(buffer, model) {
     const channels = byte(COUNT);
     const found = [];
     const add = (name, at, rows, width) => {
-        if (at && rows) found.push({ name, at, size: rows * width, width });
+        if (at && rows) found.push({ name, at, size: rows * width });
     };
     [
         ["phonemes", phonemes, 6], ["components", components, 6], ["contexts", components, classes],
@@ -65,7 +65,7 @@ export function binary(buffer, model) {
 }
 
 /** CRC-32 of bytes, as zlib has it. */
-export function crc32(bytes) {
+function crc32(bytes) {
     let sum = ~0;
     for (const byte of bytes) {
         sum ^= byte;

@@ -2,14 +2,9 @@
 // bit for bit. Would catch a call that reaches the library otherwise than it was made, and frames that get lost between.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Labial, crc32, difference, framesOf, laughter, vectors } from "./setup.mjs";
+import { Labial, difference, framesOf, laughter, vectors } from "./setup.mjs";
 
 const mouth = await Labial.load({ laughter });
-
-/** CRC-32 of frames as little-endian int16, as conformance_digest() has it. */
-function crc(frames) {
-    return crc32(frames.flatMap((faps) => [...faps].flatMap((value) => [value & 255, (value >> 8) & 255])));
-}
 
 /** The labels of a model's phonemes by what they are called in its header. */
 function constants(model) {
@@ -119,16 +114,12 @@ function play(steps, feed) {
     return frames;
 }
 
-const streams = vectors();
+const streams = Object.entries(vectors());
 const wanted = framesOf("tests/conformance/frames.txt");
-assert.ok(streams.length >= 24);
-for (const { name, steps, frames, digest } of streams) {
+assert.ok(streams.length >= 24 && streams.length === Object.keys(wanted).length);
+for (const [name, steps] of streams) {
     for (const feed of Object.keys(feeds)) {
-        test(`${name}, ${feed}`, () => {
-            const found = play(steps, feed);
-            assert.equal(difference(found, wanted[name]), "");
-            assert.deepEqual([found.length, crc(found).toString(16)], [frames, digest.toString(16)]);
-        });
+        test(`${name}, ${feed}`, () => assert.equal(difference(play(steps, feed), wanted[name]), ""));
     }
 }
 

@@ -17,7 +17,6 @@ export const { Labial, LabialError, heard, timings } = await load("/index.js");
 /** The laughter model, from the package beside it. */
 export const { default: laughter } = await load("-laughter/index.js");
 export const { unpack } = await load("/unpack.js");
-export { crc32 } from "../../web/layout.mjs";
 
 /** The repository's file of this path. */
 export function source(path) {
@@ -26,21 +25,19 @@ export function source(path) {
 
 const MODELS = { SPEECH: ["speech", "SPEECH_EN_"], LAUGHTER: ["laughter", "LAUGHTER_SYNTHETIC_"] };
 
-/** The streams of tests/conformance/vectors.c: name, steps, the number of frames and their digest. */
+/** The streams of tests/conformance/vectors.c, by name: their steps. */
 export function vectors() {
-    const text = source("tests/conformance/vectors.c");
-    const steps = {};
-    for (const [, name, body] of text.matchAll(/conformance_step_t (\w+)_steps\[\] = \{([^;]*)\};/g)) {
-        steps[name] = [...body.matchAll(/(PUSH|CANCEL|AGAIN|END|ARTICULATION)(?:\(([^)]*)\))?/g)].map(([, kind, inner = ""]) => {
+    const found = {};
+    const streams = source("tests/conformance/vectors.c").matchAll(/conformance_step_t (\w+)_steps\[\] = \{([^;]*)\};/g);
+    for (const [, name, body] of streams) {
+        found[name] = [...body.matchAll(/(PUSH|CANCEL|AGAIN|END|ARTICULATION)(?:\(([^)]*)\))?/g)].map(([, kind, inner = ""]) => {
             const [first, second, third] = inner.split(/,\s*/);
             if (kind !== "PUSH") return { kind, frames: Number(first), milliseconds: Number(second) };
             const [model, prefix] = MODELS[first];
             return { kind, model, label: second.slice(prefix.length), milliseconds: Number(third) };
         });
     }
-    return [...text.matchAll(/\{ "(\w+)", \w+, (\d+), (\d+), (0x[0-9a-f]+)u \}/g)].map(([, name, , frames, digest]) => ({
-        name, steps: steps[name], frames: Number(frames), digest: Number(digest),
-    }));
+    return found;
 }
 
 /** The frames of a file such as tests/conformance/frames.txt, by the names that it has. */

@@ -2,17 +2,11 @@
 // tests/voices/oracle.py works it out. And clocks, misuse, and what a hostile server can do.
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Labial, REST, binary, crc32, difference, framesOf, refused, rows, source, wait, words } from "./setup.mjs";
+import { Labial, REST, binary, difference, framesOf, refused, rows, source, wait, words } from "./setup.mjs";
 
 const labial = await Labial.load({ words });
 const { sessions } = JSON.parse(source("tests/voices/sessions.json"));
 const wanted = framesOf("tests/voices/frames.txt");
-
-/** The number of frames, the last one's number, and the CRC-32 of their FAPs. */
-function summary(frames, number) {
-    const faps = Int16Array.from(frames.flatMap((one) => [...one]));
-    return [frames.length, frames.length ? number : -1, crc32(new Uint8Array(faps.buffer))];
-}
 
 function* times([name, first, last, difference]) {
     if (name === "played") yield first;
@@ -29,11 +23,11 @@ for (const { name, options: { offset_ms: offset = 0, ...options } = {}, steps, s
                 continue;
             }
             const frames = [...times([call, ...rest])].flatMap((seconds) => voice.played(seconds));
-            found.push(summary(frames, voice.number));
+            found.push([frames.length, frames.length ? voice.number : -1]);
             every.push(...frames);
         }
         assert.equal(difference(every, wanted[name]), "");
-        assert.deepEqual(found, shown);
+        assert.deepEqual(found, shown.map(([count, last]) => [count, last]));
     });
 }
 

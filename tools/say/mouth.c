@@ -87,10 +87,7 @@ static void warn(mouth_t *mouth, const char *where, const char *label, unsigned 
             return;
     if (mouth->unknown_count == MOUTH_UNKNOWN_MAX)
         return;
-    char *copy = mouth->unknown[mouth->unknown_count++];
-    const size_t length = strlen(label);
-    memcpy(copy, label, length < MOUTH_LABEL_MAX ? length : MOUTH_LABEL_MAX);
-    copy[length < MOUTH_LABEL_MAX ? length : MOUTH_LABEL_MAX] = '\0';
+    (void)snprintf(mouth->unknown[mouth->unknown_count++], MOUTH_LABEL_MAX + 1, "%s", label);
     fprintf(stderr, "%s: warning: %s%s has no phoneme '%s', which moves as %s%s\n", mouth->program, where,
             mouth->voice->name, label, mouth->voice->names->labels[phoneme],
             mouth->unknown_count == MOUTH_UNKNOWN_MAX ? "; further unknown labels are not named" : "");
