@@ -19,94 +19,74 @@ function push(stream, { model, label, milliseconds }) {
     stream.push(labels[model].get(label), milliseconds);
 }
 
-/** How phonemes are fed, and all frames that can be had are taken: of the whole part, after each, frame by frame. */
+/** How phonemes are fed, and frames are taken that can be had, while any are left: of the whole part, after each phoneme,
+ * frame by frame. */
 const feeds = {
     fill(stream, phonemes) {
         phonemes.forEach((phoneme) => push(stream, phoneme));
-        return [];
     },
-    hungry(stream, phonemes, most) {
-        return phonemes.flatMap((phoneme) => {
+    hungry(stream, phonemes, add, left) {
+        for (const phoneme of phonemes) {
             push(stream, phoneme);
-            const found = [];
-            while (found.length < most && take(stream, 1, found)) continue;
-            most -= found.length;
-            return found;
-        });
+            while (left() > 0 && take(stream, 1, add)) continue;
+        }
     },
-    "real time"(stream, phonemes, most) {
-        const found = [];
+    "real time"(stream, phonemes, add, left) {
         stream.exact = true; // as phonemes come when they begin, each is late
-        phonemes.forEach((phoneme) => {
+        for (const phoneme of phonemes) {
             push(stream, phoneme);
             for (let ms = 0; ms < Math.min(phoneme.milliseconds, 5000); ms += 20) {
-                const frame = found.length < most && stream.tick();
-                if (frame) found.push(frame.slice());
+                const frame = left() > 0 && stream.tick();
+                if (frame) add(frame.slice());
             }
-        });
+        }
         stream.exact = false;
-        return found;
     },
 };
 
 /** Takes up to `count` frames; whether they all came. */
-function take(stream, count, found) {
+function take(stream, count, add) {
     if (count === 0) return true;
     for (const frame of stream) {
-        found.push(frame);
+        add(frame);
         if (--count === 0) return true;
     }
     return false;
 }
 
-/** A stream each of whose frames may change its articulation, by steps of `changes`: after `frames` of a part. */
-function articulated(changes) {
-    const stream = mouth.stream();
-    const tick = stream.tick.bind(stream);
-    let begun = 0;
-    function change() {
-        if (changes[0]?.frames !== stream.number + 1 - begun) return;
-        stream.articulation(Math.min(changes.shift().milliseconds, 200));
-    }
-    stream.tick = () => {
-        const frame = tick();
-        if (frame) change();
-        return frame;
-    };
-    const iterate = stream[Symbol.iterator].bind(stream);
-    stream[Symbol.iterator] = function* () {
-        for (const frame of iterate()) {
-            change();
-            yield frame;
-        }
-    };
-    return { stream, begin: () => ((begun = stream.number + 1), change()) };
-}
-
 function play(steps, feed) {
-    const changes = [];
-    const { stream, begin } = articulated(changes);
+    const stream = mouth.stream();
     const frames = [];
+    const changes = []; // of the articulation, each after so many frames of a part
     for (let i = 0; i < steps.length; ) {
         while (steps[i].kind === "ARTICULATION") changes.push(steps[i++]);
-        begin();
+        const begin = frames.length;
+        const change = () => {
+            if (changes[0]?.frames !== frames.length - begin) return;
+            stream.articulation(Math.min(changes.shift().milliseconds, 200));
+        };
+        const add = (frame) => {
+            frames.push(frame);
+            change();
+        };
+        change();
         const phonemes = [];
         while (steps[i].kind === "PUSH") phonemes.push(steps[i++]);
         const cut = steps[i].kind === "CANCEL" ? steps[i].frames : Infinity;
-        const part = feeds[feed](stream, phonemes, cut);
+        const left = () => cut - (frames.length - begin);
+        feeds[feed](stream, phonemes, add, left);
         if (cut < Infinity) {
-            assert.ok(take(stream, cut - part.length, part), "the frame to cancel after does not come");
+            assert.ok(take(stream, left(), add), "the frame to cancel after does not come");
             stream.cancel(steps[i].milliseconds);
         } else {
             stream.end();
         }
         while (++i < steps.length && steps[i].kind === "AGAIN") {
-            assert.ok(take(stream, steps[i].frames, part));
+            assert.ok(take(stream, steps[i].frames, add));
             stream.cancel(steps[i].milliseconds);
         }
-        take(stream, Infinity, part);
+        take(stream, Infinity, add);
         assert.ok(stream.done);
-        frames.push(...part);
         if (i < steps.length) stream.restart();
     }
     assert.equal(stream.number, frames.length - 1);
