@@ -1,7 +1,5 @@
 // Labial: lips from phonemes. docs/browser.md is the manual, index.d.ts documents each call.
-import {
-    CHANNELS, LabialError, Memory, NO_HEARING, NO_LAUGHTER, NO_WORDS, VISEMES, allowed, amount, elapsed, heard, shown,
-} from "./memory.js";
+import { CHANNELS, LabialError, Memory, NO_LAUGHTER, VISEMES, allowed, amount, elapsed, heard, shown } from "./memory.js";
 import { Stream } from "./stream.js";
 import { Track, speak } from "./track.js";
 import { unpack } from "./unpack.js";
@@ -32,6 +30,8 @@ const LABEL_MAX = 256;
 const MODEL_MAX = 2 ** 26;
 /** What other packages take, since their own sources would be copies. */
 const TOOLS = { LabialError, Memory, allowed, amount, elapsed, heard, shown, unpack, timings };
+/** The error for a package that load() was not given. */
+const missing = (name, is) => `${name} ${is} not loaded: Labial.load({ ${name}: () => import("labial-${name}") })`;
 const LABELS = { auto: 0xe0, arpabet: 0x20, ipa: 0x40, xsampa: 0x80 };
 
 /** A model for streams, bundled or loaded. */
@@ -99,11 +99,11 @@ export class Labial {
     }
 
     async hear(source, options) {
-        return (await given(this.#hearing, NO_HEARING, "hear")).hear(TOOLS, this, source, options);
+        return (await given(this.#hearing, missing("hearing", "is"), "hear")).hear(TOOLS, this, source, options);
     }
 
     async words() {
-        return (await given(this.#words, NO_WORDS, "words")).words(TOOLS, this);
+        return (await given(this.#words, missing("words", "are"), "words")).words(TOOLS, this);
     }
 
     async voice(options) {
@@ -349,11 +349,11 @@ export class Labial {
 }
 
 /** What load() was given, or what a function that it was given loads; without it, or without its `call`, the error
- * `missing`. */
-async function given(source, missing, call = "") {
+ * `problem`. */
+async function given(source, problem, call = "") {
     let found = await (typeof source === "function" ? source() : source);
     while (found && found.default) found = found.default; // a module, or one inside another as CommonJS has it
-    if (!found || (call && typeof found[call] !== "function")) throw new LabialError(missing);
+    if (!found || (call && typeof found[call] !== "function")) throw new LabialError(problem);
     return found;
 }
 

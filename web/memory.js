@@ -9,10 +9,6 @@ export const LONGEST = 86400;
 /** The error for a laugh without the model. */
 export const NO_LAUGHTER =
     'the laughter model is not loaded: Labial.load({ laughter: () => import("labial-laughter") }), await laughter()';
-/** The error for hearing without its package. */
-export const NO_HEARING = 'hearing is not loaded: Labial.load({ hearing: () => import("labial-hearing") })';
-/** The error for words without their package. */
-export const NO_WORDS = 'words are not loaded: Labial.load({ words: () => import("labial-words") })';
 
 /** An error of the library, with its description; `code` is the result (labial_result_t), 0 without one. */
 export class LabialError extends Error {
