@@ -9,7 +9,7 @@ const compiled = new Map();
 /** What to hear with `tools`, which are labial's: its own sources would be another copy. */
 export async function hear(tools, labial, source, options = {}) {
     const { LabialError, allowed, shown } = tools;
-    const { model = "small", output = "faps", channels = 1, delay, play, exact } = options;
+    const { model = "small", output = "faps", channels = 1 } = options;
     labial.checkOutput(output);
     const given = Object.hasOwn(MODELS, model) ? MODELS[model] : model;
     if (given == null || !["function", "object"].includes(typeof given)) {
@@ -18,11 +18,10 @@ export async function hear(tools, labial, source, options = {}) {
     const context = contextOf(tools, source ?? null, options.context);
     const code = await allowed(module(tools, given));
     const wasm = (await WebAssembly.instantiate(code, {})).exports;
-    const listened = source == null ? null : await tap(tools, context, source, play);
+    const listened = source == null ? null : await tap(tools, context, source, options.play);
     try {
-        const sampleRate = listened?.sampleRate ?? options.sampleRate;
-        const settings = { sampleRate, channels: listened ? 1 : channels, output, context, tap: listened, delay, exact };
-        return new Hearing(tools, labial, wasm, settings);
+        const heard = listened ? { sampleRate: listened.sampleRate, channels: 1 } : { channels };
+        return new Hearing(tools, labial, wasm, { ...options, ...heard, output, context, tap: listened });
     } catch (error) {
         listened?.close();
         throw error;
@@ -89,7 +88,7 @@ class Hearing extends EventTarget {
     #number = -1;
     #heard = 0; // frames that the module has counted, which differ from #count by #offset
     #offset = 0;
-    #base = 0; // the frame with which the sound since the last restart begins, and the samples of each channel since
+    #base = 0; // the frame with which the sound since the last restart begins, and the samples of a channel since
     #pushed = 0;
     #sampleRate;
     #latency;
@@ -128,8 +127,7 @@ class Hearing extends EventTarget {
         for (let at; (at = wasm.hearing_class(0, this.#names.length)); ) this.#names.push(memory.text(at));
         this.#latency = wasm.ears_latency(this.#at) / 1000;
         this.#delay = tap ? tools.amount(delay ?? this.#latency + 0.08, "delay") : 0;
-        const take = (block, time) => this.#ended || this.#push(block, time);
-        tap?.start(this.#delay, take, (what) => this.dispatchEvent(new Event(what)));
+        tap?.start(this.#delay, (...block) => this.#ended || this.#push(...block), (what) => this.dispatchEvent(new Event(what)));
     }
 
     // ---- In ---------------------------------------------------------------------------------------------------------
