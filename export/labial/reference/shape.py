@@ -37,6 +37,10 @@ class Choice:
     share: np.ndarray  #: (S, K), sums to 1; 0 beyond a phoneme's own components
     offset: np.ndarray  #: (S, K) seconds from the component's mean duration, at most SLOPE_LIMIT deviations
 
+    def of(self, rows: Union[slice, np.ndarray]) -> Choice:
+        """That of some of the occurrences."""
+        return Choice(self.component[rows], self.share[rows], self.offset[rows])
+
 
 def choose(mixtures: Union[ShapeTables, Model], phoneme: np.ndarray, duration: np.ndarray, previous: np.ndarray,
            following: np.ndarray, *, soft: bool) -> Choice:

@@ -130,9 +130,7 @@ class _Nearest:
 def _moments(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Counts (size,), means and variances (size, D) of the points in each cell; zeros where a cell is empty."""
     count, mean = _means(points, cell, size)
-    offset = (points - mean[cell]) ** 2
-    spread = np.stack([np.bincount(cell, weights=column, minlength=size) for column in offset.T], axis=1)
-    return count, mean, spread / np.maximum(count, 1)[:, None]
+    return count, mean, _means((points - mean[cell]) ** 2, cell, size)[1]
 
 
 def _means(points: np.ndarray, cell: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray]:
@@ -233,14 +231,10 @@ def train_channel(motion: Sequence[np.ndarray], starts: Sequence[np.ndarray], si
     scale = np.where(normalised & (overall > 1e-12), np.sqrt(overall), 1.0)
     _, cell, _ = divide(points / scale, size)
     count, mean, variance = _moments(points, cell, size)
-    largest = int(count.argmax())  # for cells that stay empty because motion has fewer different values
-    mean = np.where(count[:, None] > 0, mean, mean[largest])
-    variance = np.where(count[:, None] > 0, variance, variance[largest])
+    for values in (mean, variance):
+        values[count == 0] = values[count.argmax()]  # where motion has fewer different values than there are cells
     variance = np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6))
     order = np.lexsort((mean[:, 2], mean[:, 1], mean[:, 0]))
-    rank = np.empty(size, dtype=np.int64)
-    rank[order] = np.arange(size)
-    ends = np.cumsum([len(item) for item in motion])[:-1]
-    paths: List[np.ndarray] = np.split(rank[cell], ends)
+    paths: List[np.ndarray] = np.split(np.argsort(order)[cell], np.cumsum([len(item) for item in motion])[:-1])
     return Codebook(mean=mean[order], variance=variance[order], count=count[order],
                     log_transition=transitions(paths, size, stride), log_initial=initials(paths, starts, size))

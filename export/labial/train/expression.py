@@ -1,15 +1,12 @@
-"""Closures, how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v; and protrusion.
+"""Closures, how far the lips must come together in p, b, m, and the lower lip to the teeth in f, v; amplitude; and
+protrusion (docs/method.md, Floors and contact, Amplitude, Scale, Protrusion).
 
-A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. So the
-target in such a phoneme does not fall below a *floor*, the mean pose of people. In no phoneme does the target fall
-below a value that people hardly ever reach: protrusion ends at lips at rest, which a sum of curves does not respect.
-Where talkers are random effects the corners have no such value: it would be that of all talkers brought to one scale,
-while `shared_gains` then widens the corners as far as each moves his own.
+A sum of learned curves does not guarantee contact: an open vowel on either side pulls the lips of a /b/ apart. In no
+phoneme does the target fall below a value that people hardly ever reach: protrusion ends at lips at rest, which a sum
+of curves does not respect. Where talkers are random effects the corners have no such value: it would be that of all
+talkers brought to one scale, while `shared_gains` then widens the corners as far as each moves his own.
 
-FAP 17 is a function of the corners (docs/method.md, Protrusion): the lips protrude as far as the corners come in. How
-far is an isotonic regression on the recordings that teach FAP 17, as a table with linear pieces. A model's corners
-do not move as theirs do, but the table is asked for them: so it is stretched until the model protrudes its lips as far
-as AMPLITUDE says.
+A model's corners do not move as those that teach FAP 17 do, but the table is asked for them: so it is stretched.
 """
 
 from __future__ import annotations
@@ -60,17 +57,17 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int,
     if free_corners:
         result[:, CORNERS] = -np.inf
     contacts = np.zeros(result.shape, dtype=bool)
-    classes = np.array(phone_set.viseme_class)
     margin = round(MARGIN * fps)
+
+    def of_class(name: str) -> np.ndarray:
+        return np.array([phone_set.classes[number] == name for number in phone_set.viseme_class])
+
     for name, faps in CONTACTS.items():
-        if name not in phone_set.classes:
-            continue
-        channels = [FAP_NUMBERS.index(number) for number in faps]
-        number = phone_set.classes.index(name)
+        channels, makes = _channels(faps), of_class(name)
         poses, weights = [], []
         for item in material:
             begins = np.cumsum(item.length) - item.length
-            for i in np.flatnonzero((classes[item.phoneme] == number) & item.learnt()):
+            for i in np.flatnonzero(makes[item.phoneme] & item.learnt()):
                 near = slice(max(begins[i] - margin, 0), begins[i] + item.length[i] + margin)
                 learnt = item.weights[near, channels].any(axis=1)
                 closest = near.start + int(np.where(learnt, item.frames[near, channels].sum(axis=1), -np.inf).argmax())
@@ -81,30 +78,27 @@ def floors(material: Sequence[Recording], phone_set: PhoneSet, fps: int,
             firm = np.argsort(-contact.sum(axis=1), kind="stable")[: max(round(FIRMEST[name] * len(poses)), 1)]
             total = weight[firm].sum(axis=0)
             mean = (weight[firm] * contact[firm]).sum(axis=0) / np.maximum(total, 1e-9)
-            result[np.ix_(classes == number, channels)] = np.where(total > 0, mean, least[channels])
-            contacts[np.ix_(classes == number, channels)] = total > 0
+            result[np.ix_(makes, channels)] = np.where(total > 0, mean, least[channels])
+            contacts[np.ix_(makes, channels)] = total > 0
     if contacts.any():
-        silence = phone_set.phonemes.index(phone_set.silence)
-        channels = [FAP_NUMBERS.index(number) for number in RESTING]
+        silence, channels = phone_set.phonemes.index(phone_set.silence), _channels(RESTING)
         result[silence, channels] = _rest(material, silence, round(AWAY * fps), least)[channels]
         contacts[silence, channels] = True
     for name, faps in HELD.items():
-        if name in phone_set.classes:
-            number = phone_set.classes.index(name)
-            place = np.ix_(classes == number, [FAP_NUMBERS.index(fap) for fap in faps])
-            result[place], contacts[place] = -np.inf, True
+        place = np.ix_(of_class(name), _channels(faps))
+        result[place], contacts[place] = -np.inf, True
     return result, contacts
+
+
+def _channels(faps: Sequence[int]) -> np.ndarray:
+    return np.array([FAP_NUMBERS.index(fap) for fap in faps])
 
 
 def _rest(material: Sequence[Recording], silence: int, away: int, least: np.ndarray) -> np.ndarray:
     """(13,) FAP: the median pose of pauses, `away` frames from speech; `least` (13,) where there is none."""
-    poses, weights = [np.zeros((0, CHANNELS))], [np.zeros((0, CHANNELS))]
-    for item in material:
-        quiet = item.phoneme_at() == silence
-        near = np.convolve(~quiet, np.ones(2 * away + 1), mode="same") > 0.5
-        poses.append(item.frames[~near])
-        weights.append(item.weights[~near])
-    frames, counts = np.concatenate(poses), np.concatenate(weights) > 0
+    away_from = [np.convolve(item.sounds(silence), np.ones(2 * away + 1), mode="same") <= 0.5 for item in material]
+    frames = np.concatenate([item.frames[of] for item, of in zip(material, away_from)])
+    counts = np.concatenate([item.weights[of] for item, of in zip(material, away_from)]) > 0
     return np.array([np.median(values[of]) if of.any() else low for values, of, low in zip(frames.T, counts.T, least)])
 
 
@@ -137,21 +131,23 @@ def gains(model: Model, material: Sequence[Recording], workers: Workers) -> Tupl
     goal = np.where(np.isin(FAP_NUMBERS, (53, 54)), CORNERS_AMPLITUDE, AMPLITUDE)
     items = chosen(material)
     silence = model.phonemes.index(model.silence)
-    sounding = np.concatenate([item.phoneme_at() != silence for item in items])
-    learnt = sounding[:, None] & (np.concatenate([item.weights for item in items]) > 0)
+    learnt = np.concatenate([item.learnt_sounds(silence) for item in items])
     frames = np.concatenate([item.frames for item in items])
-    human = deviation_of(frames, learnt)
-    taught = learnt.any(axis=0)  # by the episodes chosen
-    middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
-                       for values, of in zip(frames.T, learnt.T)])
+    human, middle = deviation_of(frames, learnt), _middle(frames, learnt)
     gain = np.ones(human.shape)
     for _ in range(3):  # states and floors reduce the effect of a gain, so that one step is not enough
         current = widened(model, gain, middle)
         motion = np.concatenate(workers.run("amplitude", motion_of, [(current, item) for item in items]))
         reached = deviation_of(motion, learnt) / np.maximum(human, 1e-9)
         wanted = np.clip(gain * goal / np.maximum(reached, 1e-9), 1.0, LARGEST_GAIN)
-        gain = np.where(taught, wanted, 1.0)
+        gain = np.where(learnt.any(axis=0), wanted, 1.0)
     return gain, middle
+
+
+def _middle(frames: np.ndarray, learnt: np.ndarray) -> np.ndarray:
+    """(13,) the middle of each channel's range, of the values of frames (T, 13) that are `learnt` (T, 13)."""
+    return np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
+                     for values, of in zip(frames.T, learnt.T)])
 
 
 def shared_gains(model: Model, material: Sequence[Recording], workers: Workers,
@@ -166,17 +162,14 @@ def shared_gains(model: Model, material: Sequence[Recording], workers: Workers,
         own = [item for item in material if item.talker == talker]
         items += [own[i] for i in np.unique(np.linspace(0, len(own) - 1, min(len(own), OF_TALKER)).round().astype(int))]
     names = [item.talker for item in items]
-    learnt = [(item.phoneme_at() != silence)[:, None] & (item.weights > 0) for item in items]
-    frames, every = np.concatenate([item.frames for item in items]), np.concatenate(learnt)
-    middle = np.array([np.mean(np.percentile(values[of], RANGE)) if of.any() else 0.0
-                       for values, of in zip(frames.T, every.T)])
+    learnt = [item.learnt_sounds(silence) for item in items]
+    middle = _middle(np.concatenate([item.frames for item in items]), np.concatenate(learnt))
     human = within([item.frames * item.own_scale for item in items], learnt, names)
     gain = np.ones(CHANNELS)
     for _ in range(3):  # states and floors reduce the effect of a gain, so that one step is not enough
         current = widened(model, gain, middle, contacts=False)
         made = within(workers.run("amplitude", motion_of, [(current, item) for item in items]), learnt, names)
-        total = np.zeros(CHANNELS)
-        weight = np.zeros(CHANNELS)
+        total, weight = np.zeros(CHANNELS), np.zeros(CHANNELS)
         for talker, (of_human, amount) in human.items():
             shown = np.maximum(made[talker][0], 1e-9) / np.maximum(of_human, 1e-9)
             weighs = np.where(of_human > 0, counts[talker] * amount / (amount + HALF), 0.0)
@@ -244,12 +237,11 @@ def table(corners: np.ndarray, protrusion: np.ndarray) -> Tuple[np.ndarray, np.n
 
 def with_protrusion(model: Model, material: Sequence[Recording], workers: Workers) -> Model:
     """The model with FAP 17 computed of its corners, or as it is where `material` does not tell how."""
-    needed = [FAP_17, *CORNERS]
-    teaching = [item for item in material if (item.weights[:, needed] > 0).all(axis=1).any()]
-    frames = [item.frames[(item.weights[:, needed] > 0).all(axis=1)] for item in teaching]
-    if not frames:
+    tell = [(item.weights[:, [FAP_17, *CORNERS]] > 0).all(axis=1) for item in material]
+    teaching = [item for item, of in zip(material, tell) if of.any()]
+    if not teaching:
         return model
-    human = np.concatenate(frames)
+    human = np.concatenate([item.frames[of] for item, of in zip(material, tell)])
     mean = human[:, CORNERS].mean(axis=1)
     if min(mean.std(), human[:, FAP_17].std()) < 1e-6:
         return model
@@ -270,7 +262,7 @@ def _stretched(model: Model, material: Sequence[Recording], workers: Workers, en
     """The range (2,) over which the model's FAP 17 moves by AMPLITUDE of the recordings', outside silence; it is
     stretched about the mean of the model's corners."""
     silence = model.phonemes.index(model.silence)
-    learnt = np.concatenate([(item.phoneme_at() != silence) & (item.weights[:, FAP_17] > 0) for item in material])
+    learnt = np.concatenate([item.learnt_sounds(silence)[:, FAP_17] for item in material])
     if not learnt.any():
         return None
     human = np.concatenate([item.frames[:, FAP_17] for item in material])[learnt]

@@ -1,16 +1,7 @@
-"""Temporal kernels: the effect of each phoneme on every channel before, during and after itself (docs/method.md,
-Temporal kernels).
+"""Temporal kernels and pairs: the ridge regression of human motion (docs/method.md, Pairs and Temporal kernels).
 
-The target of a frame is the shape of its phoneme plus one tap of the kernel of the phoneme at each of L lags:
-
-    x(t) = sum over components c of p_c (shape_c + slope_c (d - mu_c))
-         + pair[phoneme, previous phoneme](t) + pair[phoneme, next phoneme](t)
-         + sum over taps i of kernel[phoneme(t + lag_i), i]
-
-The shares p_c come from the context-aware mixtures; shapes, slopes, pairs and kernels are then fitted jointly to the
-human motion by ridge regression, since a shape measured at the apex already includes what the kernels add. Only pairs
-that occur often enough are kept; the classes and the kernels account for all others. A pair has K knots, shapes at even
-distances from the phoneme's start to its end, between which its frames interpolate.
+Shapes, slopes, pairs and kernels are fitted jointly, since a shape measured at the apex already includes what the
+kernels add. Only pairs that occur often enough are kept; the classes and the kernels account for all others.
 
 The phonemes do not determine where a talker's lips rest in an utterance: each training utterance has an intercept in
 the regression, shrunk towards 0, which is dropped afterwards. Values count by their weight; penalties are multiplied by
@@ -28,7 +19,7 @@ from dataclasses import dataclass, replace
 from typing import Iterator, List, Sequence, Tuple, Union
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import block_diag, cho_factor, cho_solve
 from scipy.sparse import csc_matrix, csr_matrix, diags, hstack, identity, vstack
 
 from labial.defaults import LOOK_AHEAD
@@ -97,12 +88,8 @@ def code_of(phoneme: np.ndarray, side: Union[int, np.ndarray], neighbour: np.nda
 
 def pair_codes(material: Sequence[Recording], phonemes: int, silence: int) -> np.ndarray:
     """(occurrences, 2): the codes of each phoneme with its previous and with its next neighbour."""
-    codes = []
-    for item in material:
-        before, after = neighbours(item.phoneme, silence)
-        codes.append(np.stack([code_of(item.phoneme, 0, before, phonemes), code_of(item.phoneme, 1, after, phonemes)],
-                              axis=1))
-    return np.concatenate(codes)
+    return np.concatenate([code_of(item.phoneme[:, None], np.arange(2),
+                                   np.stack(neighbours(item.phoneme, silence), axis=1), phonemes) for item in material])
 
 
 def _design(material: Sequence[Recording], choice: Choice, deviation: np.ndarray, phonemes: int, lag: np.ndarray,
@@ -135,23 +122,10 @@ def _design(material: Sequence[Recording], choice: Choice, deviation: np.ndarray
     return hstack([onehot, share, slope, *between]).tocsr()
 
 
-@dataclass(frozen=True)
-class _Block:
-    """Some of the utterances, one after the other."""
-
-    material: Sequence[Recording]
-    choice: Choice  #: of their occurrences
-    weight: np.ndarray  #: (T, 13) weights of their values
-
-    @property
-    def motion(self) -> np.ndarray:
-        """(T, 13) FAP."""
-        return np.concatenate([item.frames for item in self.material])
-
-
 def _blocks(material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties,
-            fps: int) -> Iterator[_Block]:
-    """The material in blocks of `BLOCK` frames, which limits memory."""
+            fps: int) -> Iterator[Tuple[Sequence[Recording], Choice, np.ndarray, np.ndarray]]:
+    """The material in blocks of `BLOCK` frames, which limits memory: some utterances, the components of their
+    occurrences, their motion (T, 13), FAP, and the weights (T, 13) of its values."""
     first = occurrence = frames = 0
     for last, item in enumerate(material, 1):
         frames += len(item.frames)
@@ -161,9 +135,8 @@ def _blocks(material: Sequence[Recording], choice: Choice, silence: int, penalti
         end = occurrence + sum(len(each.phoneme) for each in part)
         weights = [each.weights * np.where(each.phoneme_at() == silence, penalties.silence, 1.0)[:, None] * 50.0 / fps
                    for each in part]
-        rows = slice(occurrence, end)
-        yield _Block(part, Choice(choice.component[rows], choice.share[rows], choice.offset[rows]),
-                     np.concatenate(weights))
+        yield (part, choice.of(slice(occurrence, end)), np.concatenate([each.frames for each in part]),
+               np.concatenate(weights))
         first, occurrence, frames = last, end, 0
 
 
@@ -256,49 +229,47 @@ class Regression:
 
     def prior(self) -> np.ndarray:
         """(D, D) inverse prior covariance of the coefficients of a channel."""
-        taps, components, knots = self.sizes
-        prior = np.zeros((taps + 2 * components + knots,) * 2)
-        kernels = slice(0, taps)
-        prior[kernels, kernels] = self.penalties.kernel * kernel_prior(self.viseme_class, len(self.lag), self.penalties)
-        index = np.arange(taps, len(prior))
-        prior[index, index] = np.repeat([self.penalties.shape, self.penalties.slope, self.penalties.pair],
-                                        [components, components, knots])
-        return prior
+        _, components, knots = self.sizes
+        others = np.repeat([self.penalties.shape, self.penalties.slope, self.penalties.pair],
+                           [components, components, knots])
+        kernels = self.penalties.kernel * kernel_prior(self.viseme_class, len(self.lag), self.penalties)
+        return block_diag(kernels, np.diag(others))
 
     def sums(self, material: Sequence[Recording], choice: Choice, base: np.ndarray) -> List[_Sums]:
         """The sums of the regression over `material`, whose motion is relative to `base` (13,) FAP; `choice` are its
         occurrences' components."""
         taps, components, knots = self.sizes
         groups = [_Sums(taps + 2 * components + knots, channels) for channels in columns_alike(material)]
-        for block in _blocks(material, choice, self.silence, self.penalties, self.fps):
-            design = _design(block.material, block.choice, self.deviation, len(self.viseme_class), self.lag,
-                             self.silence, self.pairs, self.knots)
-            motion, number = block.motion, np.arange(len(block.material))
-            utterance = np.repeat(number, [len(item.frames) for item in block.material])
+        for part, own, motion, weight in _blocks(material, choice, self.silence, self.penalties, self.fps):
+            design = _design(part, own, self.deviation, len(self.viseme_class), self.lag, self.silence, self.pairs,
+                             self.knots)
+            utterance = np.repeat(np.arange(len(part)), [len(item.frames) for item in part])
             for sums in groups:
                 of = sums.channels
-                sums.add(design, motion[:, of] - base[of], block.weight[:, of[0]], utterance)
+                sums.add(design, motion[:, of] - base[of], weight[:, of[0]], utterance)
         return groups
 
     def base(self, material: Sequence[Recording], choice: Choice) -> np.ndarray:
         """(13,) FAP: the weighted mean of the motion."""
         total = weight = np.zeros((0, CHANNELS))
-        for block in _blocks(material, choice, self.silence, self.penalties, self.fps):  # row by row, as a sum of all
-            total = np.concatenate([total, block.motion * block.weight]).sum(axis=0, keepdims=True)
-            weight = np.concatenate([weight, block.weight]).sum(axis=0, keepdims=True)
+        for _, _, motion, own in _blocks(material, choice, self.silence, self.penalties, self.fps):
+            total = np.concatenate([total, motion * own]).sum(axis=0, keepdims=True)  # row by row, as a sum of all
+            weight = np.concatenate([weight, own]).sum(axis=0, keepdims=True)
         return total[0] / weight[0]
 
     def kernels(self, solution: np.ndarray, base: np.ndarray) -> Kernels:
-        """The result of coefficients (D, 13), for motion relative to `base` (13,) FAP."""
-        phonemes = len(self.viseme_class)
+        """The result of coefficients (D, 13), for motion relative to `base` (13,) FAP. Substituted phonemes have all
+        parameters of their substitutes."""
+        phonemes, owner = len(self.viseme_class), np.asarray(self.stand_in, dtype=np.int64)
         taps, components, _ = self.sizes
-        shape, slope, pair = np.split(solution[taps:], [components, 2 * components])
-        fitted = Kernels(kernel=solution[:taps].reshape(phonemes, len(self.lag), CHANNELS), lag=self.lag,
-                         tables=replace(self.tables, shape=base + shape, slope=slope / self.deviation[:, None]),
-                         pair_key=np.stack([self.pairs // (2 * phonemes), self.pairs // phonemes % 2,
-                                            self.pairs % phonemes], axis=1),
-                         pair_shape=pair.reshape(self.knots, len(self.pairs), CHANNELS).transpose(1, 0, 2))
-        return substitute(fitted, self.stand_in)
+        kernel, shape, slope, pair = np.split(solution, [taps, taps + components, taps + 2 * components])
+        first = np.concatenate([[0], np.cumsum(self.tables.component_count)])
+        own = np.concatenate([np.arange(first[other], first[other + 1]) for other in owner])
+        tables = replace(self.tables, shape=(base + shape)[own], slope=(slope / self.deviation[:, None])[own])
+        key = np.stack([self.pairs // (2 * phonemes), self.pairs // phonemes % 2, self.pairs % phonemes], axis=1)
+        return Kernels(kernel=kernel.reshape(phonemes, len(self.lag), CHANNELS)[owner], lag=self.lag, tables=tables,
+                       pair_key=key,
+                       pair_shape=pair.reshape(self.knots, len(self.pairs), CHANNELS).transpose(1, 0, 2))
 
 
 def regression(material: Sequence[Recording], tables: ShapeTables, viseme_class: np.ndarray, stand_in: Sequence[int],
@@ -333,16 +304,6 @@ def targets_without_floors(choice: Choice, own: Sequence[Kernels], material: Seq
     for fitted, item in zip(own, material):
         rows = slice(first, first + len(item.phoneme))
         first = rows.stop
-        shape = shapes(fitted.tables, Choice(choice.component[rows], choice.share[rows], choice.offset[rows]))
-        held = np.repeat(shape, item.length, axis=0) + fitted.pairs_at(item, silence)
+        held = np.repeat(shapes(fitted.tables, choice.of(rows)), item.length, axis=0) + fitted.pairs_at(item, silence)
         result.append(add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence))
     return result
-
-
-def substitute(fitted: Kernels, stand_in: Sequence[int]) -> Kernels:
-    """Gives substituted phonemes all parameters of their substitutes `stand_in` (P,)."""
-    owner = np.asarray(stand_in, dtype=np.int64)
-    first = np.concatenate([[0], np.cumsum(fitted.tables.component_count)])
-    own = np.concatenate([np.arange(first[other], first[other + 1]) for other in owner])
-    tables = replace(fitted.tables, shape=fitted.tables.shape[own], slope=fitted.tables.slope[own])
-    return replace(fitted, kernel=fitted.kernel[owner], tables=tables)

@@ -14,23 +14,17 @@ from labial.corpus.phonesets import PHONE_SETS, PhoneSet
 from labial.defaults import CODEBOOK, COMPONENTS, FPS, KINDS, LOOK_AHEAD, METHODS, SEARCH_STRIDE, SIZES
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS, FAP_COLUMNS
+from labial.files.frames import spans
 from labial.reference.contact import FRAMES, raised
 from labial.reference.shape import ShapeTables, choose
 from labial.tables.followers import FAP_17, columns, every, mirrored, solved
 from labial.tables.model import Model, widened
 from labial.tables.quantise import LIMITS
+from labial.train import kernels as regressions
+from labial.train import talkers as effects
 from labial.train.codebook import Codebook, Division, lbg, train_channel
 from labial.train.expression import FIRMNESS, deviation_of, floors, gains, shared_gains, with_protrusion
-from labial.train.kernels import (
-    PAIR_KNOTS,
-    REACH,
-    Kernels,
-    Penalties,
-    fit_kernels,
-    lags,
-    regression,
-    targets_without_floors,
-)
+from labial.train.kernels import PAIR_KNOTS, REACH, Kernels, Penalties, lags
 from labial.train.recordings import Occurrences, Recording, occurrences, recordings, taught, with_pauses_cut
 from labial.train.shapes import Mixture, Plan, back_off, corpus_scale, fit_context, fit_mixture, shape_tables
 from labial.train.states import (
@@ -44,15 +38,6 @@ from labial.train.states import (
     codebook_tables,
     decode,
     match_states,
-)
-from labial.train.talkers import (
-    about_talkers,
-    check_variance,
-    counted_once,
-    fit_talkers,
-    pair_count_of,
-    penalties_of,
-    weights_of,
 )
 from labial.train.workers import Workers
 
@@ -120,43 +105,28 @@ class _Shapes:
     targets: Optional[List[np.ndarray]] = None  #: (T, 13) each, FAP
 
 
-@dataclass(frozen=True)
-class _MixtureTask:
-    vectors: np.ndarray
-    previous: np.ndarray
-    next: np.ndarray
-    scale: np.ndarray
-    components: int
-    classes: int  # 0: without context
-    seed: int
+#: Vectors, previous and next classes of a phoneme's samples; scale, components, seed, and classes, 0 without context.
+_MixtureTask = Tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int, int, int]
 
 
 def _mixture(task: _MixtureTask) -> Mixture:
-    mixture = fit_mixture(task.vectors, task.scale, task.components, task.seed)
-    if task.classes:
-        mixture = fit_context(mixture, task.vectors, task.scale, task.previous, task.next, task.classes)
-    return mixture
+    vectors, previous, following, scale, components, seed, classes = task
+    mixture = fit_mixture(vectors, scale, components, seed)
+    return fit_context(mixture, vectors, scale, previous, following, classes) if classes else mixture
 
 
-def _mixture_tasks(items: Occurrences, plan: Plan, classes: int, components: int, seed: int) -> List[_MixtureTask]:
-    """The mixtures to fit. All samples count alike, since weights did not improve the relation of durations and
+def _mixtures(setting: _Setting, items: Occurrences, plan: Plan, workers: Workers) -> ShapeTables:
+    """The tables of all phonemes. All samples count alike, since weights did not improve the relation of durations and
     neighbours, which only the mixtures determine."""
     vectors, learnt = items.vectors(), items.learnt
     scale = corpus_scale(vectors[learnt])
-    tasks = []
-    for members in plan.members:
-        if members is not None:
-            rows = np.flatnonzero(np.isin(items.phoneme, members) & learnt)
-            tasks.append(_MixtureTask(vectors[rows], items.previous[rows], items.next[rows], scale, components, classes,
-                                      seed))
-    return tasks
-
-
-def _tables(plan: Plan, fitted: List[Mixture], conditional: bool) -> ShapeTables:
-    """The tables of all phonemes, from the fitted mixtures."""
-    own = iter(fitted)
-    mixtures: Dict[int, Mixture] = {p: next(own) for p, members in enumerate(plan.members) if members is not None}
-    return shape_tables([mixtures[other] for other in plan.stand_in], conditional=conditional)
+    classes = len(setting.phone_set.classes) if setting.extended else 0
+    own = {p: np.flatnonzero(np.isin(items.phoneme, members) & learnt)
+           for p, members in enumerate(plan.members) if members is not None}
+    tasks = [(vectors[rows], items.previous[rows], items.next[rows], scale, setting.components, setting.seed, classes)
+             for rows in own.values()]
+    fitted = dict(zip(own, workers.run("lip shapes", _mixture, tasks)))
+    return shape_tables([fitted[other] for other in plan.stand_in], conditional=setting.extended)
 
 
 def _channel(task: Tuple[List[np.ndarray], List[np.ndarray], int, int, Division, bool]) -> Codebook:
@@ -177,10 +147,9 @@ def _unit_ends(item: Recording, boundary: np.ndarray) -> np.ndarray:
 
 def _unit_starts(item: Recording, boundary: np.ndarray) -> np.ndarray:
     """Frames at which boundary phonemes, and so units, begin; the utterance's first and last phoneme are some too."""
-    starts = np.cumsum(item.length) - item.length
     begins = boundary[item.phoneme].copy()
     begins[[0, -1]] = True
-    return starts[begins & (item.length > 0)]
+    return (np.cumsum(item.length) - item.length)[begins]
 
 
 def _stretches(material: Sequence[Recording], starts: Sequence[np.ndarray],
@@ -188,9 +157,7 @@ def _stretches(material: Sequence[Recording], starts: Sequence[np.ndarray],
     """The stretches of one channel's motion (T,) for training, and the frames at which units begin in each."""
     motion, begins = [], []
     for item, start in zip(material, starts):
-        learnt = np.concatenate([[False], item.weights[:, channel] > 0, [False]])
-        edges = np.flatnonzero(learnt[1:] != learnt[:-1]).reshape(-1, 2)
-        for first, end in edges:
+        for first, end in spans(item.weights[:, channel] > 0):
             motion.append(item.frames[first:end, channel])
             begins.append(start[(start >= first) & (start < end)] - first)
     return motion, begins
@@ -212,12 +179,13 @@ def _setting(kind: str, method: str, fps: int, codebook: Optional[int], componen
             raise LabialError(f"{name} is {value}, not within 1 .. {most}")
     if not 0.0 <= look_ahead <= REACH:
         raise LabialError(f"look-ahead is {look_ahead} s, not within 0 .. {REACH}")
-    check_variance(talker_variance)
+    effects.check_variance(talker_variance)
     extended = method == "labial"
     talker_variance = talker_variance if extended else None
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
-                    search_stride if extended else 1, divide, extended or normalise, penalties_of(talker_variance),
-                    SCALES if kind == "laughter" else Scales(), talker_variance, symmetric and extended)
+                    search_stride if extended else 1, divide, extended or normalise,
+                    effects.penalties_of(talker_variance), SCALES if kind == "laughter" else Scales(), talker_variance,
+                    symmetric and extended)
 
 
 def check_options(*, kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], jobs: int,
@@ -235,23 +203,10 @@ def check_jobs(jobs: int) -> None:
         raise LabialError(f"jobs is {jobs}, not within 1 .. 1024")
 
 
-def _own(penalties: Penalties, kind: str) -> Penalties:
-    """The penalties of a kind. In speech the rest position in an utterance depends on the talker. In laughter it
-    depends on the intensity, which the phonemes' grades express, so that intercepts must not absorb it."""
-    return penalties if kind == "speech" else replace(penalties, intercept=np.inf)
-
-
-def _check_taught(material: Sequence[Recording]) -> None:
-    untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
-    if untaught.any():
-        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
-        raise LabialError(f"nothing is left to learn {names} from: every corpus leaves this out")
-
-
 def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
     """The channels' range, from their 1st to their 99th percentile, and their mean pose outside silence."""
     reach = [np.ptp(np.percentile(taught(material, channel), [1, 99])) for channel in range(CHANNELS)]
-    sounding = [item.phoneme_at() != silence for item in material]
+    sounding = [item.sounds(silence) for item in material]
     if not any(of.any() for of in sounding):
         sounding = [~of for of in sounding]
     total = weight = np.zeros((0, CHANNELS))
@@ -264,8 +219,8 @@ def _extent(material: Sequence[Recording], silence: int) -> Dict[str, object]:
 
 def _deviation(material: Sequence[Recording], silence: int) -> np.ndarray:
     """(13,) FAP: the standard deviation of each channel outside silence, of what is learnt from."""
-    learnt = np.concatenate([(item.weights > 0) & (item.phoneme_at() != silence)[:, None] for item in material])
-    return deviation_of(np.concatenate([item.frames for item in material]), learnt)
+    return deviation_of(np.concatenate([item.frames for item in material]),
+                        np.concatenate([item.learnt_sounds(silence) for item in material]))
 
 
 def _material(corpus: Sequence[Episode], setting: _Setting) -> Tuple[List[Recording], Dict[str, float]]:
@@ -274,35 +229,42 @@ def _material(corpus: Sequence[Episode], setting: _Setting) -> Tuple[List[Record
     if setting.extended:
         ahead = max(int(lags(setting.fps, setting.look_ahead)[-1]), FRAMES)
         material = [with_pauses_cut(item, setting.silence, ahead, setting.fps) for item in material]
-    counts = weights_of(material)
+    counts = effects.weights_of(material)
     if setting.talker_variance is not None:
-        material = [counted_once(item) for item in material]
-    _check_taught(material)
+        material = [effects.counted_once(item) for item in material]
+    untaught = ~np.any([item.weights.any(axis=0) for item in material], axis=0)
+    if untaught.any():
+        names = ", ".join(np.array(FAP_COLUMNS)[untaught])
+        raise LabialError(f"nothing is left to learn {names} from: every corpus leaves this out")
     return material, counts
 
 
 def _fit_shapes(setting: _Setting, material: Sequence[Recording], talkers: Dict[str, float], items: Occurrences,
                 plan: Plan, workers: Workers) -> _Shapes:
     """Mixtures, and beyond the published method kernels, pairs, floors and contact."""
-    phonemes, classes = len(setting.phone_set.phonemes), len(setting.phone_set.classes)
-    tasks = _mixture_tasks(items, plan, classes if setting.extended else 0, setting.components, setting.seed)
-    tables = _tables(plan, workers.run("lip shapes", _mixture, tasks), setting.extended)
+    phonemes = len(setting.phone_set.phonemes)
+    tables = _mixtures(setting, items, plan, workers)
     if not setting.extended:
         none = Kernels(np.zeros((phonemes, 0, CHANNELS)), np.zeros(0, dtype=np.int64), tables,
                        np.zeros((0, 3), dtype=np.int64), np.zeros((0, 1, CHANNELS)))
         return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
     floor, contact = floors(material, setting.phone_set, setting.fps, free_corners=setting.talker_variance is not None)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    asked = regression(material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
-                       _own(setting.penalties, setting.phone_set.kind), setting.look_ahead, PAIR_KNOTS,
-                       pair_count_of(setting.talker_variance))
+    penalties = setting.penalties
+    if setting.phone_set.kind != "speech":
+        # Where lips rest depends on the talker in speech, but in laughter on its intensity, which the phonemes' grades
+        # express, so that intercepts must not absorb it.
+        penalties = replace(penalties, intercept=np.inf)
+    asked = regressions.regression(material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
+                                   penalties, setting.look_ahead, PAIR_KNOTS,
+                                   effects.pair_count_of(setting.talker_variance))
     if setting.talker_variance is None:
-        kernels = fit_kernels(asked, material, choice)
+        kernels = regressions.fit_kernels(asked, material, choice)
         own = [kernels] * len(material)
     else:
-        kernels, of = fit_talkers(asked, material, choice, setting.talker_variance, talkers)
+        kernels, of = effects.fit_talkers(asked, material, choice, setting.talker_variance, talkers)
         own = [of[item.talker] for item in material]
-    moving = targets_without_floors(choice, own, material, setting.silence)
+    moving = regressions.targets_without_floors(choice, own, material, setting.silence)
     targets = [raised(target, item.phoneme_at(), item.length, item.rest, setting.silence, floor, contact)[0]
                for target, item in zip(moving, material)]
     return _Shapes(kernels, floor, contact, targets)
@@ -418,7 +380,7 @@ def train(corpus: Sequence[Episode], *, kind: str, method: str, fps: int = FPS, 
         gain, middle = (gains(model, material, workers) if setting.talker_variance is None
                         else shared_gains(model, material, workers, talkers))
         if setting.talker_variance is not None:
-            about = about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
+            about = effects.about_talkers(setting.talker_variance, _deviation(material, setting.silence), gain, middle)
             model = replace(model, training={**model.training, "talkers": about})
         model = widened(model, gain, middle, contacts=setting.talker_variance is None)
         return with_protrusion(model, material, workers) if setting.computing else model
@@ -428,9 +390,8 @@ def without_apex(corpus: Sequence[Episode]) -> List[str]:
     """A message if the apex of some phonemes is unknown; training then uses their middle."""
     segments = [segment for episode in corpus for segment in episode.segments]
     unknown = len(segments) - told(segments)
-    if not unknown:
-        return []
-    return [f"apex: not known of {unknown} of {len(segments)} phonemes, which are learnt from their middle"]
+    message = f"apex: not known of {unknown} of {len(segments)} phonemes, which are learnt from their middle"
+    return [message] if unknown else []
 
 
 def backed_off(model: Model) -> List[str]:

@@ -56,11 +56,18 @@ class Recording:
         """(T,) int64: the phoneme of each frame."""
         return np.repeat(self.phoneme, self.length)
 
+    def sounds(self, silence: int) -> np.ndarray:
+        """(T,) bool: the frames outside silence."""
+        return self.phoneme_at() != silence
+
+    def learnt_sounds(self, silence: int) -> np.ndarray:
+        """(T, 13) bool: the values outside silence that are learnt."""
+        return self.sounds(silence)[:, None] & (self.weights > 0)
+
 
 def taught(material: Sequence[Recording], channel: int) -> np.ndarray:
     """(N,) the values of a channel that count."""
-    return np.concatenate([item.frames[:, channel] if item.weight is None
-                           else item.frames[item.weight[:, channel] > 0, channel] for item in material])
+    return np.concatenate([item.frames[item.weights[:, channel] > 0, channel] for item in material])
 
 
 def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List[Recording]:
@@ -89,8 +96,7 @@ def recordings(corpus: Iterable[Episode], phone_set: PhoneSet, fps: int) -> List
                       apex=resampled.apex[seen], frames=resampled.motion,
                       weight=_weights(episode.source, np.repeat(phoneme, length) == silence, missing),
                       talker=episode.source.talker,
-                      stretch=np.array(episode.source.stretch) if episode.source.stretch else None)
-        )
+                      stretch=np.array(episode.source.stretch) if episode.source.stretch else None))
     if not result:
         raise LabialError("the corpus holds no episode that is long enough to train on")
     return result
@@ -112,9 +118,8 @@ def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Reco
             middle = begin + frames // 2
             rows.append((phoneme, milliseconds / 1000.0, frames, apex if begin <= apex < begin + frames else middle))
             begin += frames
-    phonemes, durations, lengths, apexes = zip(*rows)
-    return replace(item, phoneme=np.array(phonemes, dtype=np.int64), duration=np.array(durations, dtype=np.float64),
-                   length=np.array(lengths, dtype=np.int64), apex=np.array(apexes, dtype=np.int64), resting=resting)
+    phoneme, duration, length, apex = map(np.array, zip(*rows))
+    return replace(item, phoneme=phoneme, duration=duration, length=length, apex=apex, resting=resting)
 
 
 def _weights(source: Source, silent: np.ndarray, missing: np.ndarray) -> Optional[np.ndarray]:
@@ -156,10 +161,10 @@ def occurrences(material: List[Recording], phone_set: PhoneSet) -> Occurrences:
     """Gathers the phoneme occurrences of `material` in order."""
     silence = phone_set.phonemes.index(phone_set.silence)
     viseme_class = np.asarray(phone_set.viseme_class, dtype=np.int64)
-    around = [neighbour_classes(item.phoneme, viseme_class, silence) for item in material]
+    previous, following = np.concatenate([neighbour_classes(item.phoneme, viseme_class, silence) for item in material],
+                                         axis=1)
     return Occurrences(phoneme=np.concatenate([item.phoneme for item in material]),
                        duration=np.concatenate([item.duration for item in material]),
-                       previous=np.concatenate([before for before, _ in around]),
-                       next=np.concatenate([after for _, after in around]),
+                       previous=previous, next=following,
                        apex_shape=np.concatenate([item.frames[item.apex] for item in material]),
                        learnt=np.concatenate([item.weights[item.apex].any(axis=1) for item in material]))

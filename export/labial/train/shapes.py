@@ -159,13 +159,8 @@ def log_normal(vectors: np.ndarray, mean: np.ndarray, covariance: np.ndarray) ->
 
 def log_joint(samples: Samples, mixture: Mixture) -> np.ndarray:
     """(n, C) log of the weight times the probability of shape, duration and both neighbours."""
-    result: np.ndarray = (
-        np.log(mixture.weight)
-        + log_normal(samples.vectors, mixture.mean, mixture.covariance)
-        + mixture.log_previous.T[samples.previous]
-        + mixture.log_next.T[samples.next]
-    )
-    return result
+    result: np.ndarray = np.log(mixture.weight) + log_normal(samples.vectors, mixture.mean, mixture.covariance)
+    return result + mixture.log_previous.T[samples.previous] + mixture.log_next.T[samples.next]
 
 
 def prior_covariance(samples: Samples) -> np.ndarray:
@@ -187,8 +182,7 @@ def log_posterior(samples: Samples, mixture: Mixture) -> float:
 
 def _class_table(responsibility: np.ndarray, of: np.ndarray, classes: int) -> np.ndarray:
     """(C, V) smoothed log-probabilities of the classes (n,) under responsibilities (n, C)."""
-    counts: np.ndarray = np.stack([np.bincount(of, weights=column, minlength=classes) for column in responsibility.T])
-    counts = counts + CLASS_PRIOR
+    counts = np.stack([np.bincount(of, column, classes) for column in responsibility.T]) + CLASS_PRIOR
     return np.log(counts / counts.sum(axis=1, keepdims=True))
 
 
@@ -210,7 +204,11 @@ def maximise(samples: Samples, responsibility: np.ndarray) -> Mixture:
 
 def expect(samples: Samples, mixture: Mixture) -> np.ndarray:
     """The E step: responsibilities (n, C)."""
-    joint = log_joint(samples, mixture)
+    return _shared(log_joint(samples, mixture))
+
+
+def _shared(joint: np.ndarray) -> np.ndarray:
+    """(n, C) responsibilities of log-probabilities (n, C)."""
     return np.exp(joint - logsumexp(joint, axis=1, keepdims=True))
 
 
@@ -240,7 +238,7 @@ def fit_context(start: Mixture, vectors: np.ndarray, scale: np.ndarray, previous
     samples = Samples(vectors / scale, previous, following, classes)
     joint = np.log(start.weight) + log_normal(samples.vectors, start.mean / scale,
                                               start.covariance / scale[:, None] / scale[None, :])
-    fitted, _ = climb(samples, np.exp(joint - logsumexp(joint, axis=1, keepdims=True)))
+    fitted, _ = climb(samples, _shared(joint))
     return Mixture(weight=fitted.weight, mean=fitted.mean * scale,
                    covariance=fitted.covariance * scale[:, None] * scale[None, :],
                    log_previous=_floored(fitted.log_previous), log_next=_floored(fitted.log_next))

@@ -1,17 +1,5 @@
-"""States (docs/method.md, Matched states and Tracking): statistics of human motion for the states of decoded paths.
-
-The codebook's variances describe human motion inside a cell. But the run-time decodes a state path for a target, which
-stands still and jumps where the mouth glides. So the training set is decoded from its own targets, and each state's
-three means and variances are estimated from the human frames that were decoded as this state. The same frames give the
-variance of human motion about the target; its inverse is the anchor. Transitions are counted on the decoded paths,
-too: smooth targets use far fewer of them than people do, so that the exporter can keep few.
-
-Tracking states have memory, for motion that is slower than the kernels' reach. A smile sinks over seconds, while
-kernels see only some hundred milliseconds of the past. So the hidden chain describes the motion: a state is a cell of
-people's positions, transitions are counted on people's paths, and a target is an observation of the state, with the
-variance of the training data. The search then follows the motion like a filter. A frame's position is a least-squares
-combination of its state's mean and its target.
-"""
+"""States (docs/method.md, Matched states, Anchors and Tracking): statistics of human motion for the states of decoded
+paths. Smooth targets use far fewer transitions than people do, so that the exporter can keep few."""
 
 from __future__ import annotations
 

@@ -1,23 +1,16 @@
-"""Talkers as random effects: what they share, and the deviation of each (docs/method.md, Talkers).
+"""Talkers as random effects: what they share, b, and the deviation u_t of each (docs/method.md, Talkers).
 
-The coefficients of talker t's regression, kernels, shapes, slopes and pairs, are b + u_t. With P the inverse prior
-covariance that one talker alone would have, and v the variance of talkers,
-
-    b ~ N(0, C),    u_t ~ N(0, V),    C = (SHARED P)^-1,    V = v C
-
-and all talkers' normal equations A_t, B_t, with u_t marginalised, give
+With P the inverse prior covariance that one talker alone would have, and v the variance of talkers, b ~ N(0, C) and u_t
+~ N(0, V), C = (SHARED P)^-1, V = v C. All talkers' normal equations A_t, B_t, with u_t marginalised, give
 
     (sum over t of (I + A_t V)^-1 A_t  +  C^-1) b = sum over t of (I + A_t V)^-1 B_t
     u_t = V (I + A_t V)^-1 (B_t - A_t b)
 
-However much there is of a talker, (I + A_t V)^-1 A_t stays below V^-1: forty minutes of one say no more about people
-than one person can. Both sums count a talker by the weight of his corpus. A channel that one talker alone teaches is
-fitted as without talkers, with prior P.
+Both sums count a talker by the weight of his corpus. A channel that one talker alone teaches is fitted as without
+talkers, with prior P.
 
-A voice is adapted to a talker by what talkers share, from a model that was trained so, plus his deviation, from half a
-minute of his speech. The model's kernels, shapes, slopes and pairs are b; those of the talker are b + u, with u by its
-posterior mean given his motion and the variance of talkers. How far they move is measured on him anew, in his own
-units. Everything else of the model, its mixtures, floors and states, stays.
+A voice is adapted to a talker, from half a minute of his speech, by b of a model that was trained so plus his u. How
+far it moves is measured on him anew, in his own units. Its mixtures, floors and states stay.
 """
 
 from __future__ import annotations
@@ -128,19 +121,11 @@ def deviation_of(found: Dict[int, Tuple[Equations, int]], channels: np.ndarray, 
     return replace(equations, right=right).deviation(covariance, shared[:, channels])
 
 
-def _rows(material: Sequence[Recording], choice: Choice, chosen: Sequence[int]) -> Choice:
-    """The part of `choice` for the occurrences of the chosen recordings."""
-    ends = np.cumsum([len(item.phoneme) for item in material])
-    rows = np.concatenate([np.arange(ends[i] - len(material[i].phoneme), ends[i]) for i in chosen])
-    return Choice(choice.component[rows], choice.share[rows], choice.offset[rows])
-
-
 def weights_of(material: Sequence[Recording]) -> Dict[str, float]:
     """The weight of each talker: the largest weight of his recordings, which is their corpora's."""
     counts: Dict[str, float] = {}
     for item in material:
-        most = 1.0 if item.weight is None else float(item.weight.max(initial=0.0))
-        counts[item.talker] = max(counts.get(item.talker, 0.0), most)
+        counts[item.talker] = max(counts.get(item.talker, 0.0), float(item.weights.max(initial=0.0)))
     return counts
 
 
@@ -150,10 +135,10 @@ def fit_talkers(asked: kernels.Regression, material: Sequence[Recording], choice
     material's occurrences, `variance` is v, `counts` says how much each talker counts for what they share."""
     base, prior = asked.base(material, choice), asked.prior()
     covariance = covariance_of(prior, variance)
-    each: Dict[str, Dict[int, Tuple[Equations, int]]] = {}
-    for talker in dict.fromkeys(item.talker for item in material):
-        chosen = [index for index, item in enumerate(material) if item.talker == talker]
-        each[talker] = equations_of(asked, [material[i] for i in chosen], _rows(material, choice, chosen), base)
+    of = np.repeat([item.talker for item in material], [len(item.phoneme) for item in material])  # each occurrence
+    each = {talker: equations_of(asked, [item for item in material if item.talker == talker],
+                                 choice.of(np.flatnonzero(of == talker)), base)
+            for talker in dict.fromkeys(item.talker for item in material)}
     shared = np.zeros((len(prior), CHANNELS))
     own = {talker: np.zeros(shared.shape) for talker in each}
     for channels in kernels.columns_alike(material):
@@ -162,7 +147,7 @@ def fit_talkers(asked: kernels.Regression, material: Sequence[Recording], choice
         alone = len(teachers) == 1
         normal, right = prior * (1.0 if alone else SHARED), np.zeros((len(prior), len(channels)))
         for talker in teachers:
-            equations = each[talker][first][0]
+            equations, _ = each[talker][first]
             places = [each[talker][int(channel)][1] for channel in channels]
             a, b = (equations.normal, equations.right) if alone else equations.marginal(covariance)
             count = 1.0 if alone or counts is None else counts[talker]
@@ -267,13 +252,8 @@ def adapted(model: Model, corpus: Sequence[Episode], attribution: str = "") -> M
                         kernel=plain.kernel + own.kernel, pair_shape=plain.pair_shape + own.pair_shape[back])
         gain = _gain(plain, material, about)
     frames = sum(len(item.frames) for item in material)
+    told = about_talkers(float(about["variance"]), about["deviation"], gain, about["middle"])
     return replace(
         widened(plain, gain, about["middle"], contacts=False),
         attribution=" ".join(filter(None, [model.attribution, attribution])),
-        training={
-            **model.training,
-            "adapted": {"episodes": len(material), "frames": frames},
-            "talkers": {"variance": float(about["variance"]), **{name: about[name].tolist() for name in KEYS[1:]},
-                        "gain": gain.tolist()},
-        },
-    )
+        training={**model.training, "adapted": {"episodes": len(material), "frames": frames}, "talkers": told})
