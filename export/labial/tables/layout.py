@@ -98,12 +98,11 @@ def _kernel_words(kernels: np.ndarray) -> np.ndarray:
     """(P L W, 1) words of kernels (P, L, C), four channels to a word, each 128 more; zeros fill the last."""
     check_fits("kernels", "b", kernels.reshape(-1))
     biased = np.pad(kernels, [(0, 0), (0, 0), (0, -kernels.shape[-1] % 4)]).reshape(-1, 4) + 128
-    return (biased << np.array([0, 8, 16, 24])).sum(axis=1)[:, None]
+    return biased @ (1 << np.array([[0], [8], [16], [24]]))
 
 
-def channel_tables(model: ExportedModel, channel: int) -> List[Table]:
-    """The tables of one channel."""
-    k = channel
+def channel_tables(model: ExportedModel, k: int) -> List[Table]:
+    """The tables of channel `k`."""
     emissions = np.stack([model.emission_mean[k], model.emission_gain[k], model.emission_cost[k]], axis=1)
     states = np.column_stack([model.state_mean[k], model.state_motion[k], model.state_hold[k], model.state_share[k],
                               model.state_weight[k]])
@@ -159,12 +158,8 @@ def table_bytes(model: ExportedModel) -> Dict[str, int]:
     return {**sizes, "descriptors": 32 * len(model.centre) + 84}
 
 
-def _padded(data: bytes) -> bytes:
-    return data + bytes(-len(data) % 4)
-
-
 def _packed(tables: Sequence[Table]) -> bytes:
-    return b"".join(_padded(table.packed()) for table in tables)
+    return b"".join(table.packed() + bytes(-table.size % 4) for table in tables)
 
 
 def blob(model: ExportedModel) -> bytes:

@@ -29,12 +29,8 @@ _FORMATS = (3, 4, FORMAT)
 _NAMES_SINCE = {"phoneme_class.npy": "viseme_class.npy", "decode_mean.npy": "emission_mean.npy",
                 "decode_variance.npy": "emission_variance.npy"}
 
-_TEXT = (
-    "kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
-    "attribution", "training",
-)
-
-
+_TEXT = ("kind", "method", "phonemes", "classes", "silence", "fps", "soft", "search_stride", "aliases", "substitutes",
+         "attribution", "training")
 
 _POSITION, _LOGARITHM, _PRECISION = (-1e5, 1e5), (-1e5, 1e-9), (1e-15, 1e15)
 #: The least and the largest value of each array; the library's tables hold no others, however scaled.
@@ -135,7 +131,7 @@ def check(model: Model) -> None:
             "a phoneme's viseme class does not exist")
     rests = np.asarray(model.contact, dtype=bool)[model.phonemes.index(model.silence)]
     expect(not (rests & np.isneginf(model.floor[model.phonemes.index(model.silence)])).any(),
-            "silence has a channel at rest without a floor")
+           "silence has a channel at rest without a floor")
     expect(bool((np.diff(model.emission_mean, axis=1) >= 0).all()),
             "emission_mean is not ascending, states are not in order")
     expect(np.isfinite(model.log_initial).any(axis=1).all(), "a channel has no state to start in")
@@ -219,13 +215,11 @@ def load(path: PathLike) -> Model:
         expect("model.json" in members, "not a labial model: it holds no model.json")
         members = {**{name: members[former] for former, name in _NAMES_SINCE.items() if former in members}, **members}
         values = _texts(members["model.json"])
-        for item in fields(Model):
-            if item.name not in _TEXT:
-                member = f"{item.name}.npy"
-                if item.name in _OPTIONAL and member not in members:
-                    continue
-                expect(member in members, f"not a labial model: it holds no {member}")
-                values[item.name] = array(item.name, members[member])
+        for name in (item.name for item in fields(Model) if item.name not in _TEXT):
+            there = f"{name}.npy" in members
+            expect(there or name in _OPTIONAL, f"not a labial model: it holds no {name}.npy")
+            if there:
+                values[name] = array(name, members[f"{name}.npy"])
         if "source" not in values and len(values.get("protrusion", ())):  # before format 5
             values["source"] = np.where(every() == FAP_17, FROM_CORNERS, every())
         return Model(**values)
@@ -265,8 +259,8 @@ def _texts(data: bytes) -> Dict[str, Any]:
         expect(isinstance(text[name], dict) and all(isinstance(label, str) for label in text[name].values()),
                 f"model.json: {name} is not an object of texts")
     expect(isinstance(text["training"], dict), "model.json: training is not an object")
-    values = {name: text[name] for name in _TEXT}
-    return {**values, "phonemes": tuple(text["phonemes"]), "classes": tuple(text["classes"])}
+    return {**{name: text[name] for name in _TEXT}, "phonemes": tuple(text["phonemes"]),
+            "classes": tuple(text["classes"])}
 
 
 def mean_pose(model: Model) -> np.ndarray:

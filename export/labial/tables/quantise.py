@@ -12,23 +12,8 @@ from labial.corpus.phonesets import LABEL_SETS
 from labial.defaults import PREDECESSORS
 from labial.errors import ModelError
 from labial.files.faps import CHANNELS
-from labial.tables.fixed import (
-    COST_SCALE,
-    NO_FLOOR,
-    POSITION_MAX,
-    POSITION_SCALE,
-    PULL_MAX,
-    STIFFNESS_MAX,
-    WEIGHT_MIN,
-    WEIGHT_SUM_MAX,
-    gain,
-    rounded_shift,
-    share_code,
-    short_gain_code,
-    weight_code,
-    weight_code_below,
-    weight_value,
-)
+from labial.tables import fixed
+from labial.tables.fixed import POSITION_MAX, POSITION_SCALE, weight_code, weight_code_below, weight_value
 from labial.tables.followers import every, integer_range, solved
 from labial.tables.model import Model
 from labial.tables.phones import phone_set
@@ -142,56 +127,27 @@ def quantise(model: Model, name: str, *, predecessors: int = PREDECESSORS) -> Ex
     hold, weights, firm = state_weights(model, scaled(motion, motion_scale))
     names = phone_set(model)
     exported = ExportedModel(
-        name=name,
-        kind=model.kind,
-        method=model.method,
-        attribution=model.attribution,
-        fps=model.fps,
-        phonemes=model.phonemes,
+        name=name, kind=model.kind, method=model.method, attribution=model.attribution, fps=model.fps,
+        phonemes=model.phonemes, classes=model.classes, soft=model.soft, search_stride=model.search_stride,
         names=tuple((text, model.phonemes.index(label), sets) for text, label, sets in entries(
             {labels: names.names(labels) for labels in LABEL_SETS})),
-        silence=model.phonemes.index(model.silence),
-        soft=model.soft,
-        first_component=first,
-        component_count=np.asarray(model.component_count),
-        viseme_class=np.asarray(model.viseme_class),
-        classes=model.classes,
-        boundary=np.asarray(model.boundary).astype(np.int64),
-        cost=_component_costs(model, deviation)[kept],
+        silence=model.phonemes.index(model.silence), first_component=first,
+        component_count=np.asarray(model.component_count), viseme_class=np.asarray(model.viseme_class),
+        boundary=np.asarray(model.boundary).astype(np.int64), cost=_component_costs(model, deviation)[kept],
         duration_mean=np.clip(np.rint(model.duration_mean * 1000.0), 0, 65535).astype(np.int64)[kept],
-        duration_gain=gain(deviation * 1000.0)[kept],
-        contexts=_contexts(model, kept),
-        shapes=shapes[kept],
-        slopes=slopes[kept] if model.slope.any() else None,
-        kernels=kernels,
-        kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1,
-        kernel_behind=_taps_behind(lags),
-        pair_keys=pair_keys[order],
-        pairs=pairs[order],
-        floor=floor,
-        floors=floors,
-        contacts=contacts,
-        centre=centre,
-        firm=firm,
-        shape_scale=shape_scale,
-        slope_scale=slope_scale,
-        kernel_scale=kernel_scale,
+        duration_gain=fixed.gain(deviation * 1000.0)[kept], contexts=_contexts(model, kept),
+        shapes=shapes[kept], slopes=slopes[kept] if model.slope.any() else None, kernels=kernels,
+        kernel_stride=int(lags[1] - lags[0]) if len(lags) > 1 else 1, kernel_behind=_taps_behind(lags),
+        pair_keys=pair_keys[order], pairs=pairs[order], floor=floor, floors=floors, contacts=contacts,
+        centre=centre, firm=firm, shape_scale=shape_scale, slope_scale=slope_scale, kernel_scale=kernel_scale,
         pair_scale=pair_scale,
         emission_mean=_positions(model.emission_mean - centre[:, None] / POSITION_SCALE, "emission_mean"),
-        emission_gain=short_gain_code(np.sqrt(model.emission_variance) * POSITION_SCALE),
-        emission_cost=_costs(-0.5 * np.log(model.emission_variance), 255),
-        initial=_costs(model.log_initial, 255),
-        state_mean=positions[..., 0],
-        state_motion=motion,
-        motion_scale=motion_scale,
-        state_hold=hold,
-        state_share=share_code(model.state_anchor / (model.state_precision[..., 0] + model.state_anchor)),
-        state_weight=weights,
-        search_stride=model.search_stride,
-        transitions=_transitions(model, predecessors),
-        protrusion=_protrusion(model),
-        source=np.asarray(model.source),
-    )
+        emission_gain=fixed.short_gain_code(np.sqrt(model.emission_variance) * POSITION_SCALE),
+        emission_cost=_costs(-0.5 * np.log(model.emission_variance)), initial=_costs(model.log_initial),
+        state_mean=positions[..., 0], state_motion=motion, motion_scale=motion_scale, state_hold=hold,
+        state_share=fixed.share_code(model.state_anchor / (model.state_precision[..., 0] + model.state_anchor)),
+        state_weight=weights, transitions=_transitions(model, predecessors), protrusion=_protrusion(model),
+        source=np.asarray(model.source))
     own: Dict[str, Any] = {member: np.take(getattr(exported, member), channels, axis=axis)
                            for member, axis in _AXIS_OF_CHANNELS.items() if getattr(exported, member) is not None}
     return replace(exported, **own)
@@ -252,18 +208,12 @@ def _floors(model: Model, centre: np.ndarray, channels: np.ndarray) -> Tuple[np.
     """Row (P,) of each phoneme's floor, the rows (1 + F, C), positions, and the channels in contact (1 + F,), of the
     `channels` (C,) of a frame."""
     touching = np.asarray(model.contact)[:, channels].astype(np.int64) @ (1 << np.arange(len(channels)))
-    contacts = [0]
     position = np.clip(np.rint(model.floor * POSITION_SCALE) - centre, -POSITION_MAX, POSITION_MAX)
-    position = np.where(np.isneginf(model.floor), NO_FLOOR, position)
-    rows = np.full((1, len(channels)), NO_FLOOR, dtype=np.int64)
-    index = np.zeros(len(model.phonemes), dtype=np.int64)
-    for p, own in enumerate(position.astype(np.int64)[:, channels]):
-        same = np.flatnonzero((rows == own).all(axis=1) & (np.array(contacts) == touching[p]))
-        if not len(same):
-            rows, same = np.vstack([rows, own]), np.array([len(rows)])
-            contacts.append(int(touching[p]))
-        index[p] = same[0]
-    return index, rows, np.array(contacts, dtype=np.int64)
+    position = np.where(np.isneginf(model.floor), fixed.NO_FLOOR, position).astype(np.int64)[:, channels]
+    number = {((fixed.NO_FLOOR,) * len(channels), 0): 0}  # of a row and its contacts
+    index = [number.setdefault((tuple(own), of), len(number)) for own, of in zip(position.tolist(), touching.tolist())]
+    rows, contacts = zip(*number)
+    return np.array(index), np.array(rows), np.array(contacts)
 
 
 def _protrusion(model: Model) -> Optional[np.ndarray]:
@@ -280,25 +230,27 @@ def _protrusion(model: Model) -> Optional[np.ndarray]:
     return np.array([low, gain, *values], dtype=np.int64)
 
 
-def _costs(log_probability: np.ndarray, largest: int) -> np.ndarray:
-    """Costs of log-probabilities (..., Q), less the least of their row, held to `largest`."""
+def _costs(log_probability: np.ndarray) -> np.ndarray:
+    """Costs of log-probabilities (..., Q), less the least of their row."""
     best = log_probability.max(axis=-1, keepdims=True)
-    return np.minimum(np.rint((best - log_probability) * COST_SCALE), largest).astype(np.int64)
+    return np.minimum(np.rint((best - log_probability) * fixed.COST_SCALE), 255).astype(np.int64)
+
+
+def _beyond_least(model: Model, cost: np.ndarray) -> np.ndarray:
+    """Costs of components (N, ...) less the least of their phoneme, which changes no choice among them."""
+    first = model.first_component()[:-1]
+    return cost - np.repeat(np.minimum.reduceat(cost, first), model.component_count, axis=0)
 
 
 def _component_costs(model: Model, deviation: np.ndarray) -> np.ndarray:
-    cost = np.rint((np.log(deviation) - model.log_weight) * COST_SCALE)
-    for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
-        cost[begin:end] -= cost[begin:end].min()
+    cost = _beyond_least(model, np.rint((np.log(deviation) - model.log_weight) * fixed.COST_SCALE))
     return np.minimum(cost, 65535).astype(np.int64)
 
 
 def _contexts(model: Model, kept: np.ndarray) -> Optional[np.ndarray]:
     if not model.log_previous.shape[1]:
         return None
-    cost = -np.stack([model.log_previous, model.log_next], axis=1)
-    for begin, end in zip(model.first_component()[:-1], model.first_component()[1:]):
-        cost[begin:end] -= cost[begin:end].min(axis=0)  # which changes no choice among them
+    cost = _beyond_least(model, -np.stack([model.log_previous, model.log_next], axis=1))
     return np.minimum(np.rint(2.0 * cost[kept]), 15).astype(np.int64)
 
 
@@ -312,7 +264,7 @@ def _shared_components(model: Model) -> Tuple[np.ndarray, np.ndarray]:
     kept: List[int] = []
     bounds = model.first_component()
     for begin, end in zip(bounds[:-1], bounds[1:]):
-        key = b"".join(np.ascontiguousarray(table[begin:end]).tobytes() for table in tables)
+        key = b"".join(table[begin:end].tobytes() for table in tables)
         if key not in known:
             known[key] = len(kept)
             kept.extend(range(begin, end))
@@ -327,7 +279,7 @@ def _transitions(model: Model, predecessors: int) -> np.ndarray:
     kept_count = min(predecessors, states)
     kept_transitions = np.zeros((CHANNELS, states, kept_count + -kept_count % 4, 2), dtype=np.int64)
     for k in range(CHANNELS):
-        cost = np.minimum(np.rint(-COST_SCALE * model.log_transition[k]), 1e9)
+        cost = np.minimum(np.rint(-fixed.COST_SCALE * model.log_transition[k]), 1e9)
         usage = _stationary(model.log_transition[k])[:, None] * np.exp(model.log_transition[k])
         for q in range(states):
             order = np.argsort(-usage[:, q], kind="stable")
@@ -358,7 +310,7 @@ def _motion(means: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
 
 def scaled(motion: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """(13, Q, 2) the positions of steps of these sizes (13, 2)."""
-    return rounded_shift(motion * scale[:, None], 8)
+    return fixed.rounded_shift(motion * scale[:, None], 8)
 
 
 def state_weights(model: Model, motion: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -372,31 +324,26 @@ def state_weights(model: Model, motion: np.ndarray) -> Tuple[np.ndarray, np.ndar
     for k in range(CHANNELS):
         held = model.state_precision[k, :, 0] + model.state_anchor[k]
         tied = model.state_precision[k, :, 1:] * np.array([0.25, 1.0])
-        scale = WEIGHT_SUM_MAX / float(held.max())
+        scale = fixed.WEIGHT_SUM_MAX / float(held.max())
         while True:
-            hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(WEIGHT_MIN)))
+            hold[k] = np.maximum(weight_code(held * scale), weight_code(np.array(fixed.WEIGHT_MIN)))
             moving[k] = _within(weight_value(hold[k]), weight_code(tied * scale), np.abs(motion[k]))
-            most = _diagonal(weight_value(hold[k]), weight_value(moving[k]))
-            if most <= WEIGHT_SUM_MAX:
+            tied_most = float(weight_value(moving[k]).max(axis=0) @ [2, 6])
+            most = float(weight_value(hold[k]).max()) + tied_most  # the largest diagonal element states can make
+            if most <= fixed.WEIGHT_SUM_MAX:
                 break
-            scale *= min(WEIGHT_SUM_MAX / most, 0.99)
-        tied_most = most - weight_value(hold[k]).max()
-        firm[k] = weight_code_below(np.array(min(model.firm[k] * scale, WEIGHT_SUM_MAX - tied_most)))
+            scale *= min(fixed.WEIGHT_SUM_MAX / most, 0.99)
+        firm[k] = weight_code_below(np.array(min(model.firm[k] * scale, fixed.WEIGHT_SUM_MAX - tied_most)))
     return hold, moving, firm
-
-
-def _diagonal(hold: np.ndarray, moving: np.ndarray) -> float:
-    """The largest diagonal element that states of these weights (Q,) and (Q, 2) can make together."""
-    return float(hold.max() + 2 * moving[:, 0].max() + 6 * moving[:, 1].max())
 
 
 def _within(hold: np.ndarray, codes: np.ndarray, mean: np.ndarray) -> np.ndarray:
     """Codes (Q, 2) of the weights of delta and delta-delta, lowered where a state is too stiff for its hold (Q,), delta
     exceeds delta-delta, or means (Q, 2), positions, pull too far."""
-    codes = _lowered(codes, STIFFNESS_MAX * hold / np.maximum(weight_value(codes[:, 1]), 1))
+    codes = _lowered(codes, fixed.STIFFNESS_MAX * hold / np.maximum(weight_value(codes[:, 1]), 1))
     codes[:, 0] = np.minimum(codes[:, 0], codes[:, 1])
     pull = weight_value(codes) * mean
-    excess = 4 * pull.max(axis=0).sum() / (PULL_MAX * hold.min())
+    excess = 4 * pull.max(axis=0).sum() / (fixed.PULL_MAX * hold.min())
     if excess <= 1.0:
         return codes
     with np.errstate(divide="ignore", invalid="ignore"):
