@@ -107,6 +107,40 @@ def alone(method: Method) -> Method:
     return cast(Method, call)
 
 
+Owner = TypeVar("Owner", bound="Closing")
+
+
+class Closing:
+    """What has memory of the library, which closing frees, as leaving a ``with`` block does."""
+
+    _what: str  #: how errors call it
+
+    def __init__(self) -> None:
+        self._guard = Guard()
+        self._memory: Any = None
+        self._address = 0  # of the memory
+
+    @alone
+    def close(self) -> None:
+        """Frees the memory; may be called again. Every other call then raises StreamError."""
+        self._free()
+
+    @alone
+    def __enter__(self: Owner) -> Owner:
+        self._open()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def _free(self) -> None:
+        self._memory, self._address = None, 0
+
+    def _open(self) -> None:
+        if self._memory is None:
+            raise StreamError(ERROR_STATE, f"the {self._what} is closed")
+
+
 def _forked() -> None:
     """In a child process: resets the lock, since the parent's threads do not exist here."""
     for guard in list(_guards):

@@ -9,24 +9,12 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from ctypes import (
-    POINTER,
-    c_char_p,
-    c_double,
-    c_int,
-    c_int16,
-    c_int32,
-    c_int64,
-    c_size_t,
-    c_uint8,
-    c_uint32,
-    c_uint64,
-    c_void_p,
-)
+from ctypes import POINTER, c_char_p, c_uint32, c_void_p
 from functools import cache
+from itertools import count, takewhile
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Dict
+from typing import Any, Callable, Dict, Tuple
 
 from labial import __version__
 from labial.errors import LabialError, StreamError, pip
@@ -52,12 +40,12 @@ LAUGH_FULL = 256
 BLOB_MAGIC = b"LBM1"
 #: The types of flat/CMakeLists.txt, which makes the library's list of its functions.
 _TYPES: Dict[str, Any] = {
-    "void": None, "int": c_int, "int32_t": c_int32, "int64_t": c_int64, "uint64_t": c_uint64, "size_t": c_size_t,
-    "number": c_uint32, "double": c_double, "text": c_char_p, "pointer": c_void_p, "frame": POINTER(c_int16),
-    "shares": POINTER(c_uint8),
+    "void": None, "int": ctypes.c_int, "int32_t": ctypes.c_int32, "int64_t": ctypes.c_int64,
+    "uint64_t": ctypes.c_uint64, "size_t": ctypes.c_size_t, "number": c_uint32, "double": ctypes.c_double,
+    "text": c_char_p, "pointer": c_void_p, "frame": POINTER(ctypes.c_int16), "shares": POINTER(ctypes.c_uint8),
 }
 #: A function that the library asks for a word's pronunciation (labial_voice_own_fn of include/labial/voice.h).
-PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, c_size_t)
+PRONOUNCE = ctypes.CFUNCTYPE(c_void_p, c_void_p, c_void_p, ctypes.c_size_t)
 #: What the functions' symbols begin with.
 _PREFIX = "" if sys.platform == "win32" else "flat_"
 
@@ -73,14 +61,18 @@ def _bound(loaded: ctypes.CDLL) -> Library:
     """All functions that the library lists."""
     listed = getattr(loaded, f"{_PREFIX}function")
     listed.restype, listed.argtypes = c_char_p, [c_uint32]
-    functions, number = Library(), 0
-    while row := listed(number):
-        name, result, *arguments = row.decode("ascii").split()
+    functions = Library()
+    for row in texts(listed):
+        name, result, *arguments = row.split()
         function = getattr(loaded, _PREFIX + name)
         function.restype, function.argtypes = _TYPES[result], [_TYPES[item] for item in arguments]
         setattr(functions, name, function)
-        number += 1
     return functions
+
+
+def texts(listed: Callable[[int], Any]) -> Tuple[str, ...]:
+    """What a function of the library returns for 0, 1, ..., until it returns NULL."""
+    return tuple(text.decode("ascii") for text in takewhile(bool, map(listed, count())))
 
 
 @cache

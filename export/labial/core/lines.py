@@ -5,9 +5,9 @@ from __future__ import annotations
 import ctypes
 import re
 from functools import cache
-from typing import Any, Iterator, List, NamedTuple, Optional, Tuple
+from typing import Any, Iterator, NamedTuple, Optional, Tuple
 
-from labial.core.library import LAUGH_FULL, OK, STARVED, WAITING, Library, library, memory
+from labial.core.library import LAUGH_FULL, OK, STARVED, WAITING, Library, library, memory, texts
 from labial.errors import LabialError
 
 #: A laugh between phonemes, with its intensity.
@@ -37,11 +37,7 @@ class Malformed(Exception):
 @cache
 def names() -> Tuple[str, ...]:
     """The formats, of which the first one, auto, is told by the first line. Raises LabialError without the library."""
-    core = library()
-    found: List[str] = []
-    while name := core.timings_name(len(found)):
-        found.append(name.decode("ascii"))
-    return tuple(found)
+    return texts(library().timings_name)
 
 
 def suffix(name: str) -> str:

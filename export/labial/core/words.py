@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
-from labial.core.library import OK, checked, library, memory
+from labial.core.library import OK, checked, library, memory, texts
 from labial.errors import LabialError
 
 #: LABIAL_WORDS_PHONEMES and LABIAL_WORDS_CHARACTERS: what the library makes of a word and reads of it at most.
@@ -28,10 +28,7 @@ class Spoken(NamedTuple):
 @cache
 def labels() -> Tuple[str, ...]:
     """The phonemes by number: SIL, then ARPABET. Raises LabialError without the library."""
-    found: List[str] = []
-    while label := library().words_label(len(found)):
-        found.append(label.decode("ascii"))
-    return tuple(found)
+    return texts(library().words_label)
 
 
 class OwnWords:
@@ -54,16 +51,10 @@ def _packed(word: str, phonemes: Sequence[str]) -> bytes:
     names = phonemes.split() if isinstance(phonemes, str) else list(phonemes)
     if len(names) > PHONEMES_MAX:
         raise LabialError(f"{word!r:.40} has {len(names)} phonemes, more than {PHONEMES_MAX}")
-    known = _numbers()
-    missing = [name for name in names if name not in known]
+    missing = [name for name in names if name not in labels()]
     if missing:
         raise LabialError(f"{word!r:.40}: {missing[0]!r:.40} is no phoneme of ARPABET")
-    return _encoded(word) + b"\0" + bytes([len(names), *(known[name] for name in names)])
-
-
-@cache
-def _numbers() -> Dict[str, int]:
-    return {label: number for number, label in enumerate(labels())}
+    return _encoded(word) + b"\0" + bytes([len(names), *map(labels().index, names)])
 
 
 def _encoded(text: str) -> bytes:
@@ -84,10 +75,8 @@ class Reader:
         out = (ctypes.c_uint8 * (3 + 3 * PHONEMES_MAX))()
         own = self._own.place if self._own else None
         kind = checked(library().words_read(own, self._context, data, len(data), out))
-        names = labels()
-        triples = [out[3 + 3 * i : 6 + 3 * i] for i in range(out[0])]
-        found = Spoken(_KINDS[kind], tuple(names[item[0]] for item in triples), tuple(item[1] for item in triples))
-        return found, out[2]
+        end = 3 + 3 * out[0]
+        return Spoken(_KINDS[kind], tuple(labels()[of] for of in out[3:end:3]), tuple(out[4:end:3])), out[2]
 
 
 def read_words(texts: Iterable[str], own: Optional[OwnWords] = None) -> List[Spoken]:

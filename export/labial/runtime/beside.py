@@ -24,7 +24,6 @@ SESSIONS = 65536
 SPAN_MAX = 8_000_000
 
 
-
 class Packet(NamedTuple):
     """A message to the toy."""
 

@@ -78,8 +78,7 @@ class Face:
     def tick(self) -> Values:
         """Moves the servos by one tick, 20 ms; returns the value of each output, by name."""
         self._result = checked(self._library.servos_tick(self._address, self._values), "tick")
-        scale = 1000 if self.rig.unit == "weight" else 0
-        return {name: value / scale if scale else value for name, value in zip(self.rig.outputs, self._values)}
+        return self.rig._named(self._values)
 
     @alone
     def play(self) -> None:

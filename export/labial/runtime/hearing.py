@@ -10,9 +10,9 @@ from collections.abc import AsyncIterable, AsyncIterator, Iterable, Iterator, Se
 from functools import cache
 from typing import Any, List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone, articulation, duration, number, whole
-from labial.core.library import CANCEL_MAX, ERROR_STATE, checked, library, memory
-from labial.errors import LabialError, StreamError, did_you_mean
+from labial.core.guard import Closing, alone, articulation, duration, number, whole
+from labial.core.library import CANCEL_MAX, checked, library, memory, texts
+from labial.errors import LabialError, did_you_mean
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.runtime.rig import faps_of
 from labial.runtime.stream import Frame
@@ -47,13 +47,11 @@ class Shown(NamedTuple):
 def models() -> Tuple[str, ...]:
     """The names of the models of hearing that the library has, the first of which is used where none is named:
     hear_host, or hear_small in a library that has no room for it."""
-    names: List[str] = []
-    while name := library().hearing_name(len(names)):
-        names.append(name.decode("ascii"))
-    return tuple(sorted(names, key=lambda item: (_FIRST.index(item) if item in _FIRST else len(_FIRST), item)))
+    return tuple(sorted(texts(library().hearing_name),
+                        key=lambda item: (_FIRST.index(item) if item in _FIRST else len(_FIRST), item)))
 
 
-class Hearing:
+class Hearing(Closing):
     """Ears: hears speech, and makes frames of it.
 
         with labial.Hearing(24000) as hearing:
@@ -77,18 +75,21 @@ class Hearing:
         comes to rest.
     """
 
+    _what = "hearing"
+
     def __init__(self, sample_rate: int = 16000, channels: int = 1, *, model: Optional[str] = None,
                  exact: bool = False) -> None:
+        super().__init__()
         core, names = library(), models()
         model = names[0] if model is None and names else model or ""
         if model not in names:
             raise LabialError(f"{model!r} is no model of hearing: {did_you_mean(model, names)}")
         self._sample_rate, self._channels = whole(sample_rate, "a sample rate"), whole(channels, "a number of channels")
-        number = next(k for k in range(len(names)) if core.hearing_name(k).decode("ascii") == model)
+        number = texts(core.hearing_name).index(model)
         self._names = [core.hearing_class(number, k).decode("ascii") for k in range(core.hearing_classes(number))]
         self._model = model
-        self._library, self._guard = core, Guard()
-        self._memory: Any = memory(core.ears_size())
+        self._library = core
+        self._memory = memory(core.ears_size())
         self._address = ctypes.addressof(self._memory)
         if not (0 <= self._sample_rate < 2**32 and 0 <= self._channels < 2**32):
             raise LabialError(f"a rate of {sample_rate} and {channels} channels are not supported")
@@ -213,27 +214,7 @@ class Hearing:
         """Frames per second."""
         return FPS
 
-    # ---- Closing
-
-    @alone
-    def close(self) -> None:
-        """Frees the memory; may be called again."""
-        self._address = 0
-        self._memory = None
-
-    @alone
-    def __enter__(self) -> Hearing:
-        self._open()
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()
-
     # ---- With the lock held
-
-    def _open(self) -> None:
-        if not self._address:
-            raise StreamError(ERROR_STATE, "the hearing is closed")
 
     def _samples(self, sound: Sound) -> array[int]:
         """The whole samples of a block, with what was left of the one before."""

@@ -6,10 +6,10 @@ import ctypes
 import os
 import unicodedata
 from functools import cache
-from typing import Any, List, Optional, Tuple, Union
+from typing import Any, Optional, Tuple, Union
 
 from labial.core.guard import whole
-from labial.core.library import BLOB_MAGIC, ERROR_NAME, ERROR_PHONEME, OK, checked, failure, library, memory, sentence
+from labial.core.library import BLOB_MAGIC, ERROR_PHONEME, OK, checked, failure, library, memory, sentence, texts
 from labial.corpus.labels import LABEL_SETS
 from labial.errors import LabialError, ModelError, PathLike, StreamError
 from labial.files import limits
@@ -85,10 +85,7 @@ class Model:
         """The number of the phoneme that `label` means in the set `labels`: auto, arpabet, ipa or xsampa. Raises
         StreamError if it means none."""
         text = self._text(label)
-        found = library().find(self._names, set_of(labels), text, len(text))
-        if found < 0:
-            raise failure(ERROR_NAME, f"{label!r} in {self.name}")
-        return int(found)
+        return checked(library().find(self._names, set_of(labels), text, len(text)), f"{label!r} in {self.name}")
 
     def nearest(self, label: str, labels: str = "auto") -> int:
         """The number of a phoneme for any label: its meaning or the most similar phoneme; silence for noises."""
@@ -126,11 +123,7 @@ class Model:
 @cache
 def _names() -> Tuple[str, ...]:
     """The models that the library comes with."""
-    core = library()
-    found: List[str] = []
-    while name := core.bundled_name(len(found)):
-        found.append(name.decode("ascii"))
-    return tuple(found)
+    return texts(library().bundled_name)
 
 
 @cache
@@ -162,5 +155,3 @@ def set_of(labels: str) -> int:
     if not isinstance(labels, str) or labels not in LABELS:
         raise LabialError(f"{labels!r} is no set of labels, {', '.join(LABELS)}")
     return LABELS[labels]
-
-

@@ -8,16 +8,8 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, TextI
 from labial.core.guard import duration, expect_milliseconds, number, whole
 from labial.core.library import VISEMES
 from labial.core.lines import LAUGH
-from labial.corpus.words import (
-    ENGLISH,
-    LATEST,
-    Word,
-    phonemes_of,
-    pronunciation,
-    timings_of,
-    words_of,
-    words_of_characters,
-)
+from labial.corpus import words
+from labial.corpus.words import ENGLISH, Word, pronunciation
 from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model
@@ -40,7 +32,7 @@ def phonemes(text: str, *, own: Optional[Mapping[str, Sounds]] = None, language:
     """
     if not isinstance(text, str):
         raise TypeError(f"a text is a str, not {type(text).__name__}")
-    found = phonemes_of(words_of(text), pronunciation(own, language, numbers))
+    found = words.phonemes_of(words.words_of(text), pronunciation(own, language, numbers))
     return [label for spoken in found for label in spoken.phonemes]
 
 
@@ -64,7 +56,7 @@ def word_timings(timed: Iterable[TimedWord], *, offset_ms: float = 0,
         longest = max(longest, float(start) - before, 0.0 if end is None else float(end) - float(start))
         before = float(start)
     expect_milliseconds(longest)
-    return timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
+    return words.timings_of(found, pronunciation(own, language, numbers), offset(offset_ms))
 
 
 def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], ends: Sequence[float], *,
@@ -75,16 +67,15 @@ def character_timings(text: Union[str, Sequence[str]], starts: Sequence[float], 
     if not len(text) == len(starts) == len(ends):
         raise LabialError(f"{len(text)} characters have {len(starts)} beginnings and {len(ends)} ends")
     how = pronunciation(own, language, numbers)
-    found = words_of_characters(list(text), [_time(time) for time in starts], [_time(time) for time in ends],
-                                how.language)
+    found = words.words_of_characters(list(text), list(map(_time, starts)), list(map(_time, ends)), how.language)
     expect_milliseconds(max((float(end) - float(start) for start, end in zip(starts, ends)), default=0.0))
-    return timings_of(found, how, offset(offset_ms))
+    return words.timings_of(found, how, offset(offset_ms))
 
 
 def _time(value: Any) -> int:
     found = number(value, "a time")
-    if not 0.0 <= found <= LATEST:
-        raise LabialError(f"{found:g} ms is no time from 0 to {LATEST} ms")
+    if not 0.0 <= found <= words.LATEST:
+        raise LabialError(f"{found:g} ms is no time from 0 to {words.LATEST} ms")
     return round(found)
 
 
@@ -179,8 +170,8 @@ def _intensity(text: Optional[str]) -> float:
 
 def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str, Any]], *, labels: str = "auto",
                  source: Optional[str] = None, offset_ms: float = 0.0,
-                 own: Optional[Mapping[str, Union[str, Sequence[str]]]] = None, language: str = "en",
-                 numbers: bool = False, tier: Optional[str] = None) -> List[Tuple[str, float]]:
+                 own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH, numbers: bool = False,
+                 tier: Optional[str] = None) -> List[Tuple[str, float]]:
     """The input of :func:`render` from timings in any format that ``labial timings`` reads (docs/timings.md): phonemes
     and laughs with their milliseconds, from time 0 on and without gaps.
 
@@ -193,7 +184,6 @@ def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str
     """
     from labial.corpus.formats import read_timings as read
     from labial.corpus.timings import phone_set_of, phoneme_segments
-    from labial.corpus.words import pronunciation
 
     path = given if isinstance(given, (str, os.PathLike)) else _content(given)
     segments = read(path, source, pronunciation(own, language, numbers), offset(offset_ms) / 1000.0, tier)

@@ -9,20 +9,7 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import (
-    TYPE_CHECKING,
-    Any,
-    Deque,
-    Dict,
-    Iterable,
-    Iterator,
-    List,
-    NamedTuple,
-    Protocol,
-    Sequence,
-    Tuple,
-    Union,
-)
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, NamedTuple, Protocol, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
@@ -73,10 +60,14 @@ def one_frame(frame: Faps) -> array[int]:
 
 def shares_of(frame: Any) -> bytes:
     """The 15 shares of a frame's sounds; zeros where they are not known. Raises LabialError for others than 15."""
-    shares = bytes(getattr(frame, "visemes", ()))
+    return _shares(getattr(frame, "visemes", ())) or bytes(VISEMES)
+
+
+def _shares(visemes: Iterable[int]) -> bytes:
+    shares = bytes(visemes)
     if len(shares) not in (0, VISEMES):
         raise LabialError(f"a frame has {VISEMES} shares of sounds, not {len(shares)}")
-    return shares or bytes(VISEMES)
+    return shares
 
 
 class _Kept(NamedTuple):
@@ -167,9 +158,12 @@ class Rig:
     @property
     def values(self) -> Values:
         """Current value of each output, by name."""
-        if self.unit == "weight":
-            return {name: value / 1000 for name, value in zip(self.outputs, self._values)}
-        return dict(zip(self.outputs, self._values))
+        return self._named(self._values)
+
+    def _named(self, values: Iterable[int]) -> Values:
+        """Whole numbers of the unit, one for each output, as its values by name."""
+        scale = 1000 if self.unit == "weight" else 0
+        return {name: value / scale if scale else value for name, value in zip(self.outputs, values)}
 
     @alone
     def rest(self) -> Values:
@@ -188,17 +182,14 @@ class Rig:
         if len(ahead) % CHANNELS or len(ahead) > CHANNELS * 65534:
             raise LabialError(f"frames that follow have {CHANNELS} FAPs each, at most 65,534 frames, not {len(ahead)} "
                               "numbers in all")
-        given = bytes(visemes)
-        if len(given) not in (0, VISEMES):
-            raise LabialError(f"a frame has {VISEMES} shares of sounds, not {len(given)}")
-        return self._moved(numbers + ahead, (given or shares_of(faps)) + after)
+        return self._moved(numbers + ahead, (_shares(visemes) or shares_of(faps)) + after)
 
     def ahead(self, frames: Iterable[Faps], count: int) -> Iterator[Values]:
         """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
         Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
-        waiting: Deque[_Kept] = deque()
+        waiting: deque[_Kept] = deque()
         for frame in frames:
             waiting.append(_Kept(one_frame(frame), shares_of(frame)))
             if len(waiting) > count:

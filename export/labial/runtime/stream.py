@@ -5,9 +5,9 @@ from __future__ import annotations
 import ctypes
 import math
 from array import array
-from typing import Any, List, NamedTuple, Optional, Tuple, Union
+from typing import List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Guard, alone, articulation, duration, number, whole
+from labial.core.guard import Closing, alone, articulation, duration, number, whole
 from labial.core.library import (
     DONE,
     DURATION_MAX,
@@ -22,7 +22,7 @@ from labial.core.library import (
     library,
     memory,
 )
-from labial.errors import LabialError, StreamError
+from labial.errors import LabialError
 from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.rig import Rig, Values
 
@@ -75,7 +75,7 @@ class Latency(NamedTuple):
     delay: int  #: frames from accepting a frame to delivering it
 
 
-class Stream:
+class Stream(Closing):
     """A mouth that speaks and laughs: converts pushed phonemes to frames.
 
         with labial.Stream() as stream:
@@ -88,8 +88,7 @@ class Stream:
     Any number of phonemes can be pushed ahead: those that do not fit into the C library's queue wait here. Iterating
     yields frames as far as the phonemes go; iterate again after pushing more. :meth:`tick` is for programs that follow
     a clock. The first frames lead from the neutral face to the motion; after :meth:`end` the face comes to rest in 12
-    more frames than the phonemes have, unless it rests already. Closing frees the memory, as leaving the ``with`` block
-    does; every later call raises StreamError.
+    more frames than the phonemes have, unless it rests already.
 
     Calls from several threads wait for each other. A call within a call of the same stream, such as by a signal handler
     that interrupts one, raises StreamError and changes nothing. After a fork the child has a copy of the stream; if
@@ -103,13 +102,15 @@ class Stream:
         exact: only the frames of the phonemes: the face stays as the last one leaves it, and where phonemes are late.
     """
 
+    _what = "stream"
+
     def __init__(self, model: Optional[Model] = None, *, laughter: Optional[Model] = None, labels: str = "auto",
                  nearest: bool = False, exact: bool = False) -> None:
+        super().__init__()
         first = expected(bundled("speech_en") if model is None else model)
         self._laughter = expected(bundled("laughter_synthetic") if laughter is None else laughter)
         set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
-        self._guard = Guard()
         self._models: List[Model] = []
         self._items = array("I")
         self._owed = 0.0  # remainder of rounding, milliseconds, -.5 to .5
@@ -122,7 +123,7 @@ class Stream:
         self._faps = (ctypes.c_int16 * 13)()
         self._place_of_faps = ctypes.addressof(self._faps)
         self._library = library()
-        self._memory: Any = memory(self._library.mouth_size())
+        self._memory = memory(self._library.mouth_size())
         self._address = ctypes.addressof(self._memory)
         self._current = self._place(first)
         checked(self._library.mouth_init(self._address, first.address), first.name)
@@ -140,7 +141,10 @@ class Stream:
         """
         self._open(pushing=True)
         found = self._models[self._current].number(phoneme, self._labels, self._nearest)
-        self._append(found, duration(milliseconds))
+        self._owed += duration(milliseconds)
+        length = min(max(math.floor(self._owed + 0.5), 0), DURATION_MAX)
+        self._owed -= length
+        self._items.extend((self._current, found, length))
 
     @alone
     def laugh(self, seconds: float, intensity: float = 0.5, seed: Optional[int] = None) -> None:
@@ -281,35 +285,25 @@ class Stream:
     def latency(self) -> Latency:
         """The stream's current latency."""
         self._open()
-        return self._measure()
+        self._feed()
+        core, at = self._library, self._address
+        later = sum(self._items[_ITEM * self._used + 2::_ITEM])
+        return Latency(core.mouth_held(at) + (later * self.fps + 500) // 1000, core.mouth_milliseconds(at) + later,
+                       core.mouth_waiting(at) + self._waiting(), core.mouth_delay(at))
 
     @property
     def fps(self) -> int:
         """Frames per second."""
         return self._models[0].fps
 
-    # ---- Closing
-
-    @alone
-    def close(self) -> None:
-        """Frees the stream's memory; may be called again."""
-        self._address = 0
-        self._memory = None
-        self._forget_items()
-
-    @alone
-    def __enter__(self) -> Stream:
-        self._open()
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()
-
     # ---- With the lock held
 
+    def _free(self) -> None:
+        super()._free()
+        self._forget_items()
+
     def _open(self, pushing: bool = False) -> None:
-        if not self._address:
-            raise StreamError(ERROR_STATE, "the stream is closed")
+        super()._open()
         if pushing and self._ended:
             raise failure(ERROR_STATE)
 
@@ -321,12 +315,6 @@ class Stream:
             raise failure(ERROR_FRAME_RATE, model.name)
         self._models.append(model)
         return len(self._models) - 1
-
-    def _append(self, phoneme: int, length: float) -> None:
-        self._owed += length
-        milliseconds = min(max(math.floor(self._owed + 0.5), 0), DURATION_MAX)
-        self._owed -= milliseconds
-        self._items.extend((self._current, phoneme, milliseconds))
 
     def _waiting(self) -> int:
         """Phonemes that have not been passed to the library yet."""
@@ -371,10 +359,3 @@ class Stream:
                 self._number += count
                 self._done = not count and self._library.mouth_state(self._address) == DONE
                 return count
-
-    def _measure(self) -> Latency:
-        self._feed()
-        core, at = self._library, self._address
-        later = sum(self._items[_ITEM * self._used + 2::_ITEM])
-        return Latency(core.mouth_held(at) + (later * self.fps + 500) // 1000, core.mouth_milliseconds(at) + later,
-                       core.mouth_waiting(at) + self._waiting(), core.mouth_delay(at))

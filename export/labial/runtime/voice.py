@@ -10,36 +10,16 @@ import ctypes
 import math
 import time
 import warnings
+from contextlib import suppress
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.guard import Guard, alone, duration, number
-from labial.core.library import (
-    CANCEL_MAX,
-    ERROR_FULL,
-    ERROR_STATE,
-    OK,
-    PRONOUNCE,
-    VISEMES,
-    WAITING,
-    checked,
-    library,
-    memory,
-)
+from labial.core.guard import Closing, alone, duration, number
+from labial.core.library import CANCEL_MAX, ERROR_FULL, OK, PRONOUNCE, VISEMES, WAITING, checked, library, memory
 from labial.core.words import OwnWords, labels
+from labial.corpus import words
 from labial.corpus.languages import is_chinese
 from labial.corpus.messages import Messages, Stats
-from labial.corpus.words import (
-    ENGLISH,
-    Pronunciation,
-    characters_apart,
-    known_words,
-    longest_first,
-    own_words,
-    pronunciation,
-    stretches_of,
-    words_of,
-)
-from labial.errors import LabialError, StreamError
+from labial.errors import LabialError
 from labial.files.faps import CHANNELS
 from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.render import Sounds, offset
@@ -64,7 +44,7 @@ _ABSOLUTE, _CHAINED, _JOINED = range(3)
 _Item = Tuple[Union[str, int], float, Optional[float]]
 
 
-class Voice:
+class Voice(Closing):
     """Lips that follow a voice whose words or phonemes become known while it is heard.
 
         voice = labial.Voice()
@@ -87,20 +67,22 @@ class Voice:
         are added to all times: a positive number for a service that reports them too early.
     """
 
+    _what = "voice"
+
     def __init__(self, format: Optional[str] = None, *, model: Optional[Model] = None, labels: str = "auto",
-                 nearest: bool = False, own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
+                 nearest: bool = False, own: Optional[Mapping[str, Sounds]] = None, language: str = words.ENGLISH,
                  numbers: bool = False, offset_ms: float = 0.0) -> None:
+        super().__init__()
         self._model = expected(bundled("speech_en") if model is None else model)
         set_of(labels)
         self._labels, self._nearest = labels, bool(nearest)
-        self._guard = Guard()
         self._messages = Messages(format, labels)
         self._library = library()
-        self._memory: Any = memory(self._library.voice_size(self._model.address, PLACES))
+        self._memory = memory(self._library.voice_size(self._model.address, PLACES))
         self._numbers = _numbers_in(self._model)
         checked(self._library.voice_init(self._memory, self._model.address, PLACES, self._numbers, offset(offset_ms)),
                 self._model.name)
-        self._speaker = _Speaker(pronunciation(own, language, numbers))
+        self._speaker = _Speaker(words.pronunciation(own, language, numbers))
         if self._speaker.asks:
             checked(self._library.voice_pronounce(self._memory, self._speaker.callback))
         else:
@@ -266,21 +248,6 @@ class Voice:
         read = self._messages.stats
         return Stats(read.messages, found[0], read.skipped + found[1], found[2])
 
-    # ---- Closing
-
-    @alone
-    def close(self) -> None:
-        """Frees the memory; may be called again. Every other call then raises StreamError."""
-        self._memory = None
-
-    @alone
-    def __enter__(self) -> Voice:
-        self._open()
-        return self
-
-    def __exit__(self, *exception: object) -> None:
-        self.close()
-
     @alone
     def _is_finished(self) -> bool:
         return self._memory is None or bool(self._library.voice_finished(self._memory))
@@ -292,10 +259,6 @@ class Voice:
         self._eased += 1
         checked(self._library.voice_visemes(self._memory, self._shares))
         return Frame(self._library.voice_next(self._memory) - 1, tuple(self._faps), tuple(self._shares))
-
-    def _open(self) -> None:
-        if self._memory is None:
-            raise StreamError(ERROR_STATE, "the voice is closed")
 
     def _checked(self, result: int) -> int:
         if result == ERROR_FULL:
@@ -320,7 +283,7 @@ class Voice:
         else:
             self._model.nearest("SIL")  # raises an error for a model of other phonemes
             if kind == "characters" and self._speaker.apart:
-                items = characters_apart([(str(text), start, end) for text, start, end in items])
+                items = words.characters_apart([(str(text), start, end) for text, start, end in items])
             texts = [str(text).encode("utf-8", "replace")[:0xFFFF] for text, _, _ in items]
         if kind in ("words", "characters"):
             self._speaker.prepare([str(text) for text, _, _ in items], kind == "characters")
@@ -335,12 +298,12 @@ class _Speaker:
     """How the words of a voice are pronounced: by the library with `own` words, or, where it `asks` for each text, by
     `callback`."""
 
-    def __init__(self, how: Pronunciation) -> None:
-        self.asks = how.language != ENGLISH or how.numbers
+    def __init__(self, how: words.Pronunciation) -> None:
+        self.asks = how.language != words.ENGLISH or how.numbers
         self.apart = is_chinese(how.language)  # each character is a word
-        self.own = own_words([], how)  # an error in a word of the caller's own, or in the language, is raised now
+        self.own = words.own_words([], how)  # an error in a word of the caller's own, or in the language, is raised now
         if self.asks:
-            known_words(["1"], how)
+            words.known_words(["1"], how)
         self.callback = PRONOUNCE(self._ask)
         self._how, self._tail = how, ""
         self._spoken: Dict[str, Optional[Sequence[str]]] = {}  # what other programs said; None for nothing
@@ -352,13 +315,13 @@ class _Speaker:
         if not self.asks:
             return
         if joined:  # characters: the last word may go on in the next message
-            texts = words_of(self._tail + "".join(texts))
+            texts = words.words_of(self._tail + "".join(texts))
             self._tail = texts[-1]
-        asked = stretches_of(texts, {**self._spoken, **self._how.own}, self._how.language)
+        asked = words.stretches_of(texts, {**self._spoken, **self._how.own}, self._how.language)
         if asked:
             if len(self._spoken) > _SPOKEN:
                 self._spoken, self._texts = {}, {}
-            self._spoken.update({**dict.fromkeys(asked), **known_words(asked, self._how._replace(own={}))})
+            self._spoken.update({**dict.fromkeys(asked), **words.known_words(asked, self._how._replace(own={}))})
 
     def _ask(self, _: Any, text: int, size: int) -> int:
         """The library's question: the own words for a text."""
@@ -366,14 +329,12 @@ class _Speaker:
         if said not in self._texts:
             if len(self._texts) > _SPOKEN:
                 self._texts = {}
-            wanted = stretches_of([said.decode("utf-8", "replace")], (), self._how.language)
-            try:
+            wanted = words.stretches_of([said.decode("utf-8", "replace")], (), self._how.language)
+            with suppress(LabialError):  # it said so when the text was told
                 self.prepare(wanted, False)
-            except LabialError:
-                pass  # it said so when the text was told
             spoken = {word: self._spoken.get(word) for word in wanted}
             known = {word: phonemes for word, phonemes in spoken.items() if phonemes is not None}
-            self._texts[said] = OwnWords({**self._how.own, **longest_first(known)})
+            self._texts[said] = OwnWords({**self._how.own, **words.longest_first(known)})
         return int(self._texts[said].place)
 
 
