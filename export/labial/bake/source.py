@@ -146,4 +146,3 @@ def _at_rate(path: PathLike, times: np.ndarray, frames: np.ndarray) -> np.ndarra
     count = math.floor(round(float(times[-1] + 1.0 / rate) * RATE, 6) + 1e-3)
     grid = np.arange(max(count, 1)) / RATE
     return np.stack([np.interp(grid, times, channel) for channel in frames.T], axis=1)
-

@@ -20,19 +20,7 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any, Awaitable, Callable, Deque, Optional, Tuple
 
-from pipecat.frames.frames import (
-    BotStoppedSpeakingFrame,
-    CancelFrame,
-    DataFrame,
-    EndFrame,
-    Frame,
-    InterruptionFrame,
-    StartFrame,
-    TTSAudioRawFrame,
-    TTSStartedFrame,
-    TTSStoppedFrame,
-    TTSTextFrame,
-)
+from pipecat.frames import frames
 from pipecat.processors.frame_processor import FrameDirection, FrameProcessor
 
 from labial.integrations.lips import Lips
@@ -46,7 +34,7 @@ Show = Callable[[stream.Frame], Awaitable[None]]
 
 
 @dataclass
-class LipsFrame(DataFrame):
+class LipsFrame(frames.DataFrame):
     """The mouth when it is due: 13 FAPs, and the shares of the sounds that it shows (:class:`labial.Frame`);
     ``labial.Rig("arkit").apply(frame.faps, visemes=frame.visemes)`` makes blendshapes of them."""
 
@@ -110,19 +98,19 @@ class LipsProcessor(FrameProcessor):
         self._origin = self._last = 0  # nanoseconds: where the context begins, and the latest word of all
         self._word: Optional[str] = None  # the context's latest
 
-    async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
+    async def process_frame(self, frame: frames.Frame, direction: FrameDirection) -> None:
         """Tells the voice what passes."""
         await super().process_frame(frame, direction)
-        if isinstance(frame, TTSStartedFrame):
+        if isinstance(frame, frames.TTSStartedFrame):
             self._context = None
-        elif isinstance(frame, TTSStoppedFrame):
+        elif isinstance(frame, frames.TTSStoppedFrame):
             self.voice.end_sound()
-        elif isinstance(frame, TTSTextFrame) and frame.pts and self._enter(frame.context_id):
+        elif isinstance(frame, frames.TTSTextFrame) and frame.pts and self._enter(frame.context_id):
             self._say(frame.text, frame.pts)
-        elif isinstance(frame, TTSAudioRawFrame) and self._enter(frame.context_id):
+        elif isinstance(frame, frames.TTSAudioRawFrame) and self._enter(frame.context_id):
             self.voice.sound(frame.audio, frame.sample_rate, frame.num_channels)
             self._queued += frame.num_frames / frame.sample_rate
-        elif isinstance(frame, InterruptionFrame):
+        elif isinstance(frame, frames.InterruptionFrame):
             self._over = self._context[0] if self._context else self._over
             self.voice.cancel()
             self._clock.starts.clear()
@@ -164,18 +152,18 @@ class _Heard(FrameProcessor):
         self._voice, self._clock, self._show = voice, clock, show
         self._task: Optional[asyncio.Task[None]] = None
 
-    async def process_frame(self, frame: Frame, direction: FrameDirection) -> None:
+    async def process_frame(self, frame: frames.Frame, direction: FrameDirection) -> None:
         """Keeps the clock."""
-        if isinstance(frame, CancelFrame):  # behind which nothing can be pushed
+        if isinstance(frame, frames.CancelFrame):  # behind which nothing can be pushed
             await self._close()
         await super().process_frame(frame, direction)
-        if isinstance(frame, StartFrame):
+        if isinstance(frame, frames.StartFrame):
             self._task = self.create_task(self._follow())
-        elif isinstance(frame, TTSAudioRawFrame):
+        elif isinstance(frame, frames.TTSAudioRawFrame):
             self._clock.play(frame.num_frames / frame.sample_rate)
-        elif isinstance(frame, BotStoppedSpeakingFrame):
+        elif isinstance(frame, frames.BotStoppedSpeakingFrame):
             self._clock.stop()
-        elif isinstance(frame, (EndFrame, CancelFrame)) and self._task:
+        elif isinstance(frame, (frames.EndFrame, frames.CancelFrame)) and self._task:
             await self.cancel_task(self._task)
         await self.push_frame(frame, direction)
 

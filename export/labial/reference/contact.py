@@ -1,11 +1,6 @@
-"""Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are (``lib/shape.c``).
-
-In contact a target does not fall below its floor, and equation 3 ties the frame to it firmly. A phoneme is in contact
-in the middle half of its frames, in FRAMES of them at least, and in all but OPEN of them, as a hum is; a shorter one
-borrows the frame before it and, if it has only one frame, the frame after it as well. Where at most FRAMES frames lie
-between two contacts, the lips part by PARTED in those that neither borrows, lest the two become one. In a pause the
-mouth comes to rest, except in the last frames, which lead to what follows.
-"""
+"""Contact: lips that meet in p, b, m, the lower lip at the teeth in f, v, however short these are; and rest in pauses
+(docs/method.md, Floors and contact, and Rest; ``lib/shape.c``). A phoneme in contact that is shorter than FRAMES
+borrows the frame before it and, if it has only one frame, the frame after it as well."""
 
 from __future__ import annotations
 

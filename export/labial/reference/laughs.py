@@ -21,7 +21,6 @@ from typing import Iterator, List, Sequence, Tuple
 from labial.corpus import laughter
 from labial.corpus.laughter import PERIOD_LONGEST, PERIOD_SHORTEST, PULSES, SHORTEST, TRAIN_LONGEST, VOWELS
 from labial.corpus.phonesets import LAUGHTER, LAUGHTER_GRADES
-from labial.errors import PathLike
 from labial.files.outputs import writing
 
 #: Intensity of the heartiest laugh.
@@ -46,8 +45,8 @@ def _shares(shares: Sequence[float]) -> List[int]:
 #: Of 256: how often a kind or a vowel changes within a train, what a laugh begins with, what a pause has.
 _CHANGED = _of_256(laughter.CHANGED)
 _ONSETS = {label: _of_256(share) for label, share in laughter.ONSETS.items()}
-_INHALED, _CLICKED, _BY_NOSE = _of_256(laughter.INHALED), _of_256(laughter.CLICKED), _of_256(laughter.BY_NOSE)
-_GRUNTED, _SILENT, _RESTED = _of_256(laughter.GRUNTED), _of_256(laughter.SILENT), _of_256(laughter.RESTED)
+_PAUSE = {name: _of_256(getattr(laughter, name))
+          for name in ("INHALED", "CLICKED", "BY_NOSE", "GRUNTED", "SILENT", "RESTED")}
 
 _QUANTILES = [NormalDist().inv_cdf((k + 0.5) / 32) for k in range(32)]
 #: Standard normal deviates in 1/32, and lognormal factors of durations (in 1/128) and of train lengths (in 1/32).
@@ -161,17 +160,16 @@ class _Laugh:
         self.loudness = self.loudness * PULSE_DECAY >> 8
 
     def pause(self, room: int) -> None:
-        if self.chance(_INHALED):
+        if self.chance(_PAUSE["INHALED"]):
             self.add("silence", self.duration("silence"))
-            if self.chance(_CLICKED):
+            if self.chance(_PAUSE["CLICKED"]):
                 self.add("click", self.duration("click"))
-            inhaled = "ne" if self.chance(_BY_NOSE) else "fricative"
+            inhaled = "ne" if self.chance(_PAUSE["BY_NOSE"]) else "fricative"
             self.add_graded(inhaled, self.duration(inhaled), self.train_loudness * _INHALED_LOUDNESS >> 8)
-        if self.chance(_GRUNTED):
-            self.add("grunt", self.duration("grunt"))
-        if self.chance(_SILENT):
-            self.add("silence", self.duration("silence"))
-        if self.chance(_RESTED):
+        for name, label in (("GRUNTED", "grunt"), ("SILENT", "silence")):
+            if self.chance(_PAUSE[name]):
+                self.add(label, self.duration(label))
+        if self.chance(_PAUSE["RESTED"]):
             self.add("silence", 450 + self.draw(451))
         if sum(milliseconds for _, milliseconds in self.queue) + PERIOD_SHORTEST > room:
             breath = min(self.duration("ne"), room)
@@ -229,6 +227,9 @@ def table_header() -> str:
         body = textwrap.fill(", ".join(map(str, values)), width=118, initial_indent="    ", subsequent_indent="    ")
         return f"/* {comment} */\nstatic const {kind} {name}[{len(values)}] = {{\n{body}\n}};\n"
 
+    def defines(suffix: str, **values: int) -> str:
+        return "".join(f"#define {name} {value}{suffix}\n" for name, value in values.items())
+
     number = LAUGHTER.phonemes.index
     parts = [
         """/*
@@ -241,21 +242,15 @@ def table_header() -> str:
 #include <stdint.h>
 
 """,
-        "".join(f"#define {name} {value}\n" for name, value in (
-            ("PERIOD", PERIOD), ("PERIOD_SPREAD", PERIOD_SPREAD), ("PERIOD_SHORTEST", PERIOD_SHORTEST),
-            ("PERIOD_LONGEST", PERIOD_LONGEST), ("TRAIN_MEDIAN", TRAIN_MEDIAN), ("TRAIN_LONGEST", TRAIN_LONGEST),
-            ("SHORTEST", SHORTEST))),
+        defines("", PERIOD=PERIOD, PERIOD_SPREAD=PERIOD_SPREAD, PERIOD_SHORTEST=PERIOD_SHORTEST,
+                PERIOD_LONGEST=PERIOD_LONGEST, TRAIN_MEDIAN=TRAIN_MEDIAN, TRAIN_LONGEST=TRAIN_LONGEST,
+                SHORTEST=SHORTEST),
         "\n/* Of 256: how loud the next pulse, the next train and air drawn in are; the softest train. */\n",
-        "".join(f"#define {name} {value}u\n" for name, value in (
-            ("PULSE_DECAY", PULSE_DECAY), ("TRAIN_DECAY", TRAIN_DECAY), ("INHALED_LOUDNESS", _INHALED_LOUDNESS),
-            ("SOFTEST", _SOFTEST))),
+        defines("u", PULSE_DECAY=PULSE_DECAY, TRAIN_DECAY=TRAIN_DECAY, INHALED_LOUDNESS=_INHALED_LOUDNESS,
+                SOFTEST=_SOFTEST),
         "\n/* Up to which loudness of 256 all is soft; 1/256 grades for each 1/256 more; how the dither moves on. */\n",
-        f"#define SOFT {SOFT}u\n#define GRADES {GRADES}u\n#define DITHER_STEP {_DITHER_STEP}u\n",
-        "\n/* Of 256: what a pause between trains has. */\n",
-        "".join(f"#define {name} {value}\n" for name, value in (
-            ("INHALED", _INHALED), ("CLICKED", _CLICKED), ("BY_NOSE", _BY_NOSE), ("GRUNTED", _GRUNTED),
-            ("SILENT", _SILENT), ("RESTED", _RESTED))),
-        "\n",
+        defines("u", SOFT=SOFT, GRADES=GRADES, DITHER_STEP=_DITHER_STEP),
+        "\n/* Of 256: what a pause between trains has. */\n", defines("", **_PAUSE), "\n",
         table("uint8_t", "medians", MEDIANS, "Median duration of each phoneme, milliseconds; silence has its own."),
         table("int8_t", "deviates", DEVIATES, "Equally likely standard normal deviates, in 1/32."),
         table("uint8_t", "stretches", STRETCH, "Equally likely factors of a duration, in 1/128."),
@@ -276,13 +271,8 @@ def table_header() -> str:
     return "".join(parts)
 
 
-def write_table(path: PathLike) -> None:
-    """Writes lib/laugh_table.h."""
-    with writing(path, "ascii") as out:
-        out.write(table_header())
-
-
 if __name__ == "__main__":
     import sys
 
-    write_table(sys.argv[1])
+    with writing(sys.argv[1], "ascii") as out:
+        out.write(table_header())

@@ -127,8 +127,8 @@ def _back(settled: np.ndarray, rho: np.ndarray, kappa: np.ndarray, start: np.nda
 class Solve:
     """:func:`solve` for a stream whose terms come in parts, without a lag."""
 
-    def __init__(self, stride: int, window: int = WINDOW) -> None:
-        self._stride, self._window = stride, window
+    def __init__(self, stride: int) -> None:
+        self._stride = stride
         self._forward = Forward()
         self._passed: Tuple[np.ndarray, ...] = ()  # of the forward pass, from the first frame that is not delivered on
         self._begin = 0  # that frame
@@ -139,10 +139,9 @@ class Solve:
         joined = tuple(np.concatenate(pair) for pair in zip(self._passed, passed)) if self._passed else passed
         known = len(joined[0])
         # The way back to a frame starts before the last one that is known, unless the stream ends there.
-        ready = known if last else max(known - 1 - self._window - self._stride, 0)
-        settled, rho, kappa = joined
-        start = starts(known, self._stride, self._window, 0, self._begin, settled.shape[1])
-        motion = _back(settled, rho, kappa, start[:ready])
+        ready = known if last else max(known - 1 - WINDOW - self._stride, 0)
+        start = starts(known, self._stride, begin=self._begin, channels=joined[0].shape[1])
+        motion = _back(*joined, start[:ready])
         self._passed = tuple(item[ready:].copy() for item in joined)
         self._begin += ready
         return motion

@@ -137,9 +137,8 @@ def search(chains: Chains, position: np.ndarray, closed: np.ndarray, searched: i
 class Decode:
     """:func:`decode` of one utterance whose targets come in parts, without a lag."""
 
-    def __init__(self, chains: Chains, stride: int, searched: int = SEARCHED) -> None:
-        self._chains, self._stride, self._searched = chains, stride, searched
-        self._channels = len(chains.mean)
+    def __init__(self, chains: Chains, stride: int) -> None:
+        self._chains, self._stride, self._channels = chains, stride, len(chains.mean)
         self._target = np.zeros((0, self._channels))
         self._end = np.zeros(0, dtype=bool)
         self._begin = 0  # the frame that these begin with, the first one whose state is not told
@@ -167,7 +166,7 @@ class Decode:
             inside = (ending >= self._blocks) & (ending < blocks)
             closed[ending[inside] - self._blocks, 0, np.nonzero(inside)[1]] = True
             before, position = self._found, np.take_along_axis(target, seen, axis=0)[:, None]
-            self._found = search(self._chains, position, closed, self._searched, before)
+            self._found = search(self._chains, position, closed, before=before)
             state = (self._found.first + self._found.winner)[:, 0]
             if before is not None:
                 state = np.concatenate([(before.first + before.winner)[-1:, 0], state])

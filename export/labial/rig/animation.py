@@ -65,15 +65,15 @@ def with_shares(frames: np.ndarray, phonemes: Sequence[Tuple[str, int]], fps: in
     return np.concatenate([frames, shares(phonemes, fps, len(frames))], axis=1)
 
 
+#: ARKit's blendshapes by the columns of `LIVE_LINK`.
+_ARKIT = {column: column[0].lower() + column[1:] for column in LIVE_LINK}
+
+
 def arkit(frames: np.ndarray, shares: Optional[np.ndarray] = None) -> Dict[str, np.ndarray]:
     """(T,) weights 0 .. 1 of each of ARKit's blendshapes of the mouth that the rig moves, in the order of `LIVE_LINK`,
     from (T, 13) frames in FAP units and, if known, (T, 15) shares of sounds."""
     found = outputs(face("arkit"), frames, shares)
-    return {name: found[name] for name in map(_arkit_name, LIVE_LINK) if name in found}
-
-
-def _arkit_name(column: str) -> str:
-    return column[0].lower() + column[1:]
+    return {name: found[name] for name in _ARKIT.values() if name in found}
 
 
 #: Gives values by output for frames (n, 13), shares of their sounds (n, 15) if they are known, and the number of the
@@ -110,13 +110,11 @@ def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> No
     import numpy as np
 
     weights = arkit(*_parts_of(frames))
-    still = np.zeros(len(frames))
-    columns = np.stack([weights.get(_arkit_name(column), still) for column in LIVE_LINK], axis=1)
-    for number, row in enumerate(columns, first):
+    columns = [weights.get(name, np.zeros(len(frames))) for name in _ARKIT.values()]
+    for number, row in enumerate(zip(*columns), first):
         seconds, frame = divmod(number, fps)
-        values = [f"{value:.3f}" for value in row]
         timecode = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}:{frame:02}.000"
-        out.write(",".join((timecode, str(len(LIVE_LINK)), *values)) + "\n")
+        out.write(",".join((timecode, str(len(LIVE_LINK)), *(f"{value:.3f}" for value in row))) + "\n")
 
 
 def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Optional[Rig] = None,

@@ -10,7 +10,7 @@ import math
 import os
 import re
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 from labial.errors import LabialError, PathLike
 from labial.files import limits
@@ -48,15 +48,16 @@ class Unit:
     prescale: Optional[int] = None  #: value of the PCA9685's prescale register
 
 
+_UNITS = {unit.name: unit for unit in (
+    Unit("us", 1.0, True, "microseconds"), Unit("quarter_us", 4.0, True, "quarter microseconds (Maestro)", 16383),
+    Unit("weight", 1000.0, False, "weights, 1000 for 1", 1000), Unit("plain", 1.0, False, "plain units"))}
 UNITS = ("us", "quarter_us", "pca9685", "counts", "weight", "plain")
 
 
 def make_unit(name: str, parameter: float = 50.0) -> Unit:
     """The unit `name`; `parameter` is the update frequency, Hz, of pca9685 or the timer clock, Hz, of counts."""
-    if name == "us":
-        return Unit(name, 1.0, True, "microseconds")
-    if name == "quarter_us":
-        return Unit(name, 4.0, True, "quarter microseconds (Maestro)", 16383)
+    if name in _UNITS:
+        return _UNITS[name]
     if name == "pca9685":
         low, high = (_PCA9685_OSCILLATOR / _PCA9685_TICKS / (prescale + 1) for prescale in reversed(_PCA9685_PRESCALE))
         if not low <= parameter <= high:
@@ -67,13 +68,9 @@ def make_unit(name: str, parameter: float = 50.0) -> Unit:
         tick = (prescale + 1) / _PCA9685_OSCILLATOR * 1e6
         return Unit(name, 1.0 / tick, True, f"ticks of {tick:.2f} us (PCA9685 with prescale register {prescale}, "
                                             f"{1e6 / tick / _PCA9685_TICKS:.2f} Hz)", _PCA9685_TICKS - 1, prescale)
-    if name == "counts":
-        if not 1e4 <= parameter <= 1e9:
-            raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
-        return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
-    if name == "weight":
-        return Unit(name, 1000.0, False, "weights, 1000 for 1", 1000)
-    return Unit(name, 1.0, False, "plain units")
+    if not 1e4 <= parameter <= 1e9:
+        raise LabialError(f"{parameter:g} is not within 1e4 .. 1e9 Hz")
+    return Unit(name, parameter / 1e6, True, f"counts of a timer at {parameter:.15g} Hz")
 
 
 class Gesture(NamedTuple):
@@ -85,10 +82,6 @@ class Gesture(NamedTuple):
 
 def _weights(**named: float) -> Row:
     return tuple(float(named.get(name, 0.0)) for name in FAP_COLUMNS)
-
-
-def _alone(channel: int) -> Row:
-    return tuple(float(k == channel) for k in range(CHANNELS))
 
 
 #: Named sums. The reaches are round numbers near the extremes of a spoken sentence and a laugh. The corners of a mouth
@@ -104,7 +97,8 @@ GESTURES: Dict[str, Gesture] = {
 }
 #: All names for ``from``: gestures, MPEG-4's names of FAPs, columns of a frames file.
 SOURCES: Mapping[str, Gesture] = {
-    **{name: Gesture(_alone(k), None) for names in (FAP_NAMES, FAP_COLUMNS) for k, name in enumerate(names)},
+    **{name: Gesture(_weights(**{column: 1.0}), None)
+       for names in (FAP_NAMES, FAP_COLUMNS) for name, column in zip(names, FAP_COLUMNS)},
     **GESTURES,
 }
 #: Faces to draw a rig with, FAP units: an open vowel, a rounded one, a smile that shows the teeth, and lips pressed on
@@ -211,9 +205,8 @@ def _unit(top: Table) -> Unit:
     for key in ("frequency", "clock"):
         if key in top.content and key != wanted:
             raise top.error(key, f"has no meaning for the unit {name}")
-    parameter = 50.0
-    if wanted == "clock" or (wanted and wanted in top.content):
-        parameter = top.number(wanted)
+    given = wanted == "clock" or wanted in top.content
+    parameter = top.number(str(wanted)) if given else 50.0
     try:
         return make_unit(str(name), parameter)
     except LabialError as error:
@@ -236,13 +229,12 @@ def _named(top: Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping
     return list(outputs.items())  # type: ignore[arg-type]
 
 
-def _source(table: Table) -> Tuple[Row, Union[float, None]]:
+def _source(table: Table) -> Tuple[Row, Optional[float]]:
     """The weights of ``from`` and, if it is one name, the reach that is usual for it."""
     given = table.content.get("from")
-    if isinstance(given, str):
-        given, alone = {given: 1.0}, True
-    else:
-        alone = False
+    alone = isinstance(given, str)
+    if alone:
+        given = {given: 1.0}
     if not isinstance(given, dict) or not given:
         raise table.error("from", "is the name of a gesture or a FAP, or a table { NAME = WEIGHT, ... }")
     weights, reach = (0.0,) * CHANNELS, None

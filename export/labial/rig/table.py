@@ -67,16 +67,14 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
 
     scale = rig.unit.scale
     # Minimum and maximum are rounded inwards: no servo leaves them. All else is rounded to the nearest whole number.
-    values = {"neutral": math.floor(output.neutral * scale + 0.5), "minimum": math.ceil(output.minimum * scale - 1e-9),
-              "maximum": math.floor(output.maximum * scale + 1e-9),
-              "slew": math.floor(output.slew * scale + 0.5),
-              "acceleration": math.floor(output.acceleration * scale + 0.5),
-              "deadband": math.floor(output.deadband * scale + 0.5)}
+    values = {"neutral": _nearest(output.neutral * scale), "minimum": math.ceil(output.minimum * scale - 1e-9),
+              "maximum": math.floor(output.maximum * scale + 1e-9), "slew": _nearest(output.slew * scale),
+              "acceleration": _nearest(output.acceleration * scale), "deadband": _nearest(output.deadband * scale)}
     for key, limit in (("slew", output.slew), ("acceleration", output.acceleration)):
         if limit and not values[key]:  # zero would be no limit, and one would be more than twice as much
             raise fail(key, f"{limit / rig.numbers.each:g} is less than half a step of its values, {rig.unit.text}")
     if output.closed is not None:
-        values["closed"] = math.floor(output.closed * scale + 0.5)
+        values["closed"] = _nearest(output.closed * scale)
     for key, value in values.items():
         if abs(value) > VALUE_MAX:
             raise fail(key, f"{value} {rig.unit.text} is beyond {VALUE_MAX}")
@@ -84,27 +82,25 @@ def _convert(rig: Rig, output: Output) -> TableOutput:
             raise fail(key, f"{value} {rig.unit.text} is beyond {rig.unit.limit}")
     if values["minimum"] > values["maximum"]:
         raise fail("minimum", "no whole unit lies between minimum and maximum")
-    if "closed" in values:
-        values["closed"] = min(max(values["closed"], values["minimum"]), values["maximum"])
-    if rig.unit.servo:
-        values["neutral"] = min(max(values["neutral"], values["minimum"]), values["maximum"])
+    for key in ("closed", "neutral"):
+        if key in values and (rig.unit.servo or key == "closed"):
+            values[key] = min(max(values[key], values["minimum"]), values["maximum"])
     found = _quantise(output.weights, output.gain * scale)
     if found is None:
         raise fail("from" if abs(output.gain * scale) < 4096 else "gain" if output.given_gain else "full",
                    "gain and weights are too large, or too far apart, to keep the motion within one unit")
-    weights, gain = found
-    return TableOutput(output.name, weights, gain, values["neutral"], values["minimum"],
-                       values["maximum"], values["slew"], output.invert, values.get("closed"), values["deadband"],
-                       values["acceleration"], _segments(rig, output, fail), _amounts(rig, output, fail))
-
-
-def _amounts(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -> Tuple[int, ...]:
-    """What sounds add, in the table's units."""
-    amounts = tuple(math.floor(amount * rig.unit.scale + 0.5) for amount in output.visemes)
+    segments = _segments(rig, output, fail)
+    amounts = tuple(_nearest(amount * scale) for amount in output.visemes)
     for name, amount in zip(VISEMES, amounts):
         if abs(amount) > VISEME_MAX:
             raise fail(f"visemes.{name}", f"{amount} {rig.unit.text} is beyond {VISEME_MAX}")
-    return amounts
+    weights, gain = found
+    return TableOutput(output.name, weights, gain, invert=output.invert, curve=segments, visemes=amounts,
+                       closed=values.pop("closed", None), **values)
+
+
+def _nearest(value: float) -> int:
+    return math.floor(value + 0.5)
 
 
 def _segments(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -> Tuple[Tuple[int, int, int], ...]:
@@ -114,8 +110,8 @@ def _segments(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -
     segments: List[Tuple[int, int, int]] = []
     for (linear, value), (following, reached) in zip(output.curve, output.curve[1:]):
         slope = (reached - value) / (following - linear)
-        first = math.floor(linear * scale + 0.5)
-        to = math.floor((value * scale + slope * (first - linear * scale)) + 0.5)
+        first = _nearest(linear * scale)
+        to = _nearest(value * scale + slope * (first - linear * scale))
         if abs(slope) * _SLOPE_ONE > SLOPE_MAX:
             raise fail("curve", f"between {number(value):g} and {number(reached):g} the output would move "
                                 f"{abs(slope):.0f} times as far as evenly, {SLOPE_MAX // _SLOPE_ONE} times is the most")
@@ -124,7 +120,7 @@ def _segments(rig: Rig, output: Output, fail: Callable[[str, str], DataError]) -
         if segments and first <= segments[-1][0]:
             before = output.curve[len(segments) - 1][1]
             raise fail("curve", f"the points at {number(before):g} and {number(value):g} are too near for whole units")
-        segments.append((first, to, math.floor(slope * _SLOPE_ONE + 0.5)))
+        segments.append((first, to, _nearest(slope * _SLOPE_ONE)))
     return tuple(segments)
 
 
@@ -135,8 +131,8 @@ def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]
     factors are tried, the largest weights first."""
     best: Tuple[float, Tuple[int, ...], int] = (math.inf, (), 0)
     for power in sorted(range(-12, 20), key=abs):
-        rounded = tuple(math.floor(weight * 2.0**power * 4096 + 0.5) for weight in weights)
-        whole = math.floor(gain / 2.0**power * 65536 + 0.5)
+        rounded = tuple(_nearest(weight * 2.0**power * 4096) for weight in weights)
+        whole = _nearest(gain / 2.0**power * 65536)
         best = min(best, (_error(weights, gain, rounded, whole), rounded, whole), key=lambda pair: pair[0])
         if best[0] < 0.05:
             break
@@ -145,7 +141,7 @@ def _quantise(weights: Row, gain: float) -> Optional[Tuple[Tuple[int, ...], int]
         least = max(max(map(abs, moves)) / WEIGHT_MAX, sum(map(abs, moves)) / WEIGHT_SUM_MAX)
         for step in range(_GAINS):
             whole = math.ceil(least * (1.0 + step / _GAINS)) * (1 if gain > 0 else -1)
-            rounded = tuple(math.floor(move / whole + 0.5) for move in moves)
+            rounded = tuple(_nearest(move / whole) for move in moves)
             best = min(best, (_error(weights, gain, rounded, whole), rounded, whole), key=lambda pair: pair[0])
     return None if best[0] > _NEAR else best[1:]
 
@@ -203,11 +199,6 @@ def touching(frames: np.ndarray) -> np.ndarray:
 
 def _comment(rig: Rig, what: str) -> str:
     return written_by("rig", f"{what}. Values are {rig.unit.text}.")
-
-
-#: The members of a row of a table.
-_COLUMNS = ("weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, curve, "
-            "visemes")
 
 
 def header(rig: Rig) -> str:
@@ -271,27 +262,27 @@ def _row(rig: Rig, output: Output, whole: TableOutput) -> str:
 
 def _tables(whole: TableOutput) -> str:
     """The tables that an output refers to."""
-    visemes = ", ".join(map(str, whole.visemes))
-    return _curve(whole) + (f"static const int16_t {whole.name}_visemes[LABIAL_VISEMES] = {{ {visemes} }};\n\n"
-                            if visemes else "")
-
-
-def _curve(whole: TableOutput) -> str:
-    if not whole.curve:
-        return ""
-    rows = ", ".join(f"{{ {first}, {to}, {slope} }}" for first, to, slope in whole.curve)
-    lines = textwrap.fill(rows, width=112, initial_indent="    ", subsequent_indent="    ")
-    return (f"/* What the linkage of {whole.name} needs: from, to, slope. */\n"
-            f"static const labial_rig_curve_t {whole.name}_curve = {{ {len(whole.curve)}, {{\n{lines}\n}} }};\n\n")
+    found = ""
+    if whole.curve:
+        rows = ", ".join(f"{{ {first}, {to}, {slope} }}" for first, to, slope in whole.curve)
+        lines = textwrap.fill(rows, width=112, initial_indent="    ", subsequent_indent="    ")
+        found = (f"/* What the linkage of {whole.name} needs: from, to, slope. */\n"
+                 f"static const labial_rig_curve_t {whole.name}_curve = {{ {len(whole.curve)}, {{\n{lines}\n}} }};\n\n")
+    if whole.visemes:
+        visemes = ", ".join(map(str, whole.visemes))
+        found += f"static const int16_t {whole.name}_visemes[LABIAL_VISEMES] = {{ {visemes} }};\n\n"
+    return found
 
 
 def source(rig: Rig, table: List[TableOutput]) -> str:
     """NAME.c: the table."""
     rows = ",\n".join(_row(rig, output, whole) for output, whole in zip(rig.outputs, table))
     tables = "".join(map(_tables, table))
+    columns = ("weights, invert, contact, gain, neutral, minimum, maximum, slew, closed, deadband, acceleration, "
+               "curve, visemes")
     return f"""{_comment(rig, f"{rig.name}.c - what moves a face")}#include "{rig.name}.h"
 
-{tables}/* {_COLUMNS} */
+{tables}/* {columns} */
 static const labial_rig_output_t outputs[{len(table)}] = {{
 {rows}
 }};
@@ -315,9 +306,10 @@ def write(rig: Rig, directory: PathLike) -> List[Path]:
     return [Path(directory) / name for name in files]
 
 
-def json_text(rig: Rig) -> str:
-    """A rig of weights as the JSON that `labial.rig()` of the npm package reads: the numbers of the C table, by name.
-    Raises DataError for a rig of servos, whose limits of speed a page does not apply."""
+def write_json(rig: Rig, directory: PathLike) -> Path:
+    """Writes NAME.json into `directory`, a rig of weights as `labial.rig()` of the npm package reads it: the numbers of
+    the C table, by name; its path. Raises DataError for a rig of servos, whose limits of speed a page does not
+    apply."""
     if rig.unit.name != "weight":
         raise DataError(rig.path, None, f'unit: --json is for faces of weights, "weight", not {rig.unit.name!r}')
     outputs = {}
@@ -331,14 +323,8 @@ def json_text(rig: Rig) -> str:
                                 **({"curve": output.curve} if output.curve else {}),
                                 **({"visemes": output.visemes} if output.visemes else {})}
     rows = ",\n".join(f"  {json.dumps(name)}: {json.dumps(row)}" for name, row in outputs.items())
-    return f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n'
-
-
-def write_json(rig: Rig, directory: PathLike) -> Path:
-    """Writes NAME.json into `directory`; its path."""
-    content = json_text(rig)
     path = Path(directory) / f"{rig.name}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     with writing(path, "ascii") as out:
-        out.write(content)
+        out.write(f'{{"labial": "rig", "name": {json.dumps(rig.name)}, "outputs": {{\n{rows}\n}}}}\n')
     return path
