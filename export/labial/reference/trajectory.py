@@ -140,8 +140,9 @@ class Solve:
         known = len(joined[0])
         # The way back to a frame starts before the last one that is known, unless the stream ends there.
         ready = known if last else max(known - 1 - WINDOW - self._stride, 0)
-        start = starts(known, self._stride, begin=self._begin, channels=joined[0].shape[1])
-        motion = _back(*joined, start[:ready])
+        settled, rho, kappa = joined
+        start = starts(known, self._stride, begin=self._begin, channels=settled.shape[1])
+        motion = _back(settled, rho, kappa, start[:ready])
         self._passed = tuple(item[ready:].copy() for item in joined)
         self._begin += ready
         return motion
