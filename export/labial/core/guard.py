@@ -88,6 +88,15 @@ def alone(method: Method) -> Method:
     """A method that waits for other threads' calls of its object. Raises StreamError where the thread is in such a call
     already, as a signal handler or an argument's ``__float__`` can be, and where another thread was in a call when this
     process was forked."""
+    return _alone(method, False)
+
+
+def opened(method: Method) -> Method:
+    """An :func:`alone` method of what is :class:`Closing`; raises StreamError where it is closed."""
+    return _alone(method, True)
+
+
+def _alone(method: Method, opens: bool) -> Method:
     @functools.wraps(method)
     def call(self: Any, *arguments: Any, **named: Any) -> Any:
         guard, thread = self._guard, threading.get_ident()
@@ -100,6 +109,8 @@ def alone(method: Method) -> Method:
                                   "the process was forked")
             try:  # the next statement, since a signal handler may raise after any call
                 guard.caller = thread
+                if opens:
+                    self._open()
                 return method(self, *arguments, **named)
             finally:
                 guard.caller = 0
@@ -125,9 +136,8 @@ class Closing:
         """Frees the memory; may be called again. Every other call then raises StreamError."""
         self._free()
 
-    @alone
+    @opened
     def __enter__(self: Owner) -> Owner:
-        self._open()
         return self
 
     def __exit__(self, *exception: object) -> None:

@@ -131,10 +131,9 @@ class ExportedTables:
     def select(self, phoneme: np.ndarray, milliseconds: np.ndarray, previous: np.ndarray,
                following: np.ndarray) -> np.ndarray:
         """Like :meth:`FloatTables.select`, in positions."""
-        selected = np.zeros((len(phoneme), self.knots, len(self.solved)), dtype=self.dtype)
-        for i, one in enumerate(zip(phoneme.tolist(), milliseconds.tolist(), previous.tolist(), following.tolist())):
-            selected[i] = self._select_one(*one)
-        return selected
+        each = zip(phoneme.tolist(), milliseconds.tolist(), previous.tolist(), following.tolist())
+        selected = np.array([self._select_one(*one) for one in each], dtype=self.dtype)
+        return selected.reshape(len(phoneme), self.knots, len(self.solved))
 
     def _select_one(self, phoneme: int, milliseconds: int, previous: int, following: int) -> np.ndarray:
         """(K, C) shapes of one phoneme, in the library's integer arithmetic."""

@@ -47,14 +47,11 @@ def normal_chains(mean: np.ndarray, variance: np.ndarray, log_transition: np.nda
     return Chains(mean, -log_transition, -log_initial, LEAP / COST_SCALE, emission)
 
 
-def block_at(frames: int, stride: int, begin: int = 0, channels: int = CHANNELS) -> np.ndarray:
-    """(T, C) int64: the block of each frame, per channel, of a solution whose first frame is the stream's `begin`."""
-    return _blocks_of(np.arange(frames), stride, begin, channels)
-
-
-def _blocks_of(frame: np.ndarray, stride: int, begin: int = 0, channels: int = CHANNELS) -> np.ndarray:
-    """(T, C) int64: :func:`block_at` of the frames (T,)."""
-    return np.maximum(-(((np.arange(channels) - begin) % stride - frame[:, None]) // stride), 0)
+def block_at(frames: int, stride: int, begin: int = 0, channels: int = CHANNELS, first: int = 0) -> np.ndarray:
+    """(T, C) int64: the block of each frame from `first` on, per channel, of a solution whose first frame is the
+    stream's `begin`."""
+    frame = np.arange(first, frames)[:, None]
+    return np.maximum(-(((np.arange(channels) - begin) % stride - frame) // stride), 0)
 
 
 def block_ends(frames: int, stride: int, channel: int) -> np.ndarray:
@@ -152,7 +149,7 @@ class Decode:
         target = np.concatenate([self._target, target]) if len(self._target) else target
         end = np.concatenate([self._end, end])
         known = self._begin + len(target)
-        number = _blocks_of(np.arange(self._begin, known), self._stride, channels=self._channels)
+        number = block_at(known, self._stride, channels=self._channels, first=self._begin)
         blocks = int(number.max()) + 1 if last else known // self._stride
         until = known if last else max(self._stride * (blocks - 1) + 1, 0)
         path = np.zeros((0, self._channels), dtype=np.int64)

@@ -107,10 +107,8 @@ def _fap_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
 
 def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     """Like a recording of Live Link Face: timecode ``HH:MM:SS:FF.000``, 61, then the columns."""
-    import numpy as np
-
     weights = arkit(*_parts_of(frames))
-    columns = [weights.get(name, np.zeros(len(frames))) for name in _ARKIT.values()]
+    columns = [weights.get(name, [0.0] * len(frames)) for name in _ARKIT.values()]
     for number, row in enumerate(zip(*columns), first):
         seconds, frame = divmod(number, fps)
         timecode = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}:{frame:02}.000"

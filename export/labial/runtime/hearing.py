@@ -10,7 +10,7 @@ from collections.abc import AsyncIterable, AsyncIterator, Iterable, Iterator, Se
 from functools import cache
 from typing import Any, List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Closing, alone, articulation, duration, number, whole
+from labial.core.guard import Closing, articulation, duration, number, opened, whole
 from labial.core.library import CANCEL_MAX, checked, library, memory, texts
 from labial.errors import LabialError, did_you_mean
 from labial.files.faps import CHANNELS, FAP_NUMBERS
@@ -102,14 +102,13 @@ class Hearing(Closing):
 
     # ---- Sound in, frames out
 
-    @alone
+    @opened
     def push(self, sound: Sound) -> List[Frame]:
         """Hears a block of any length, and returns the frames that are known by now. Bytes may end within a sample.
 
         Raises StreamError after :meth:`end` or :meth:`cancel`; TypeError for anything but int16 or bytes; LabialError
         for an array whose shape does not fit the channels.
         """
-        self._open()
         samples = self._samples(sound)
         frames: List[Frame] = []
         step = _PIECE * self._channels
@@ -120,42 +119,37 @@ class Hearing(Closing):
             frames += self._called(self._library.ears_push, room, piece.buffer_info()[0], count)
         return frames
 
-    @alone
+    @opened
     def end(self) -> List[Frame]:
         """No more sound will come: returns the frames that are still to come, and the way to rest."""
-        self._open()
         self._part = b""
         return self._called(self._library.ears_end, _LAST)
 
-    @alone
+    @opened
     def cancel(self, milliseconds: float = 200) -> List[Frame]:
         """Drops what is not yet delivered, and returns the frames of the way back to the neutral face, over so many
         milliseconds, rounded up to whole frames, 1 to 1,000."""
-        self._open()
         self._part = b""
         length = math.ceil(duration(milliseconds))
         return self._called(self._library.ears_cancel, min(length * FPS // 1000, CANCEL_MAX) + _LAST, length)
 
-    @alone
+    @opened
     def restart(self) -> None:
         """Continues after :meth:`end` or :meth:`cancel`: frame numbers continue, and the first frames fade in from the
         last one. Raises StreamError before the end."""
-        self._open()
         checked(self._library.ears_restart(self._address), "restart")
 
     @property
-    @alone
+    @opened
     def level(self) -> int:
         """The level of the voice: 1/256 of log2, 85 for a decibel (``labial_hear_level()``). A sound begins at that of
         the sound before. Set it before a sound where it is known; StreamError is raised while one is heard, and
         for a level out of range."""
-        self._open()
         return int(self._library.ears_level(self._address))
 
     @level.setter
-    @alone
+    @opened
     def level(self, level: int) -> None:
-        self._open()
         value = whole(level, "a level")
         checked(self._library.ears_set_level(self._address, min(max(value, 0), 2**31 - 1)), f"the level {level}")
 
@@ -174,11 +168,10 @@ class Hearing(Closing):
         self.level = found
         return found
 
-    @alone
+    @opened
     def articulation(self, percent: float) -> None:
         """How far the mouth moves, 0 to 200 percent, as :meth:`labial.Stream.articulation`. Raises LabialError for a
         number out of range."""
-        self._open()
         checked(self._library.ears_articulation(self._address, articulation(percent)), "articulation")
 
     def frames(self, blocks: Iterable[Sound]) -> Iterator[Frame]:
@@ -195,18 +188,16 @@ class Hearing(Closing):
         for frame in self.end():
             yield frame
 
-    @alone
+    @opened
     def shown(self) -> List[Shown]:
         """The stretches of lip classes that ended since the last call."""
-        self._open()
         found, self._shown = self._shown, []
         return found
 
     @property
-    @alone
+    @opened
     def latency(self) -> float:
         """Seconds from a frame's begin until it is known: .12, with hear_ahead .28."""
-        self._open()
         return float(self._library.ears_latency(self._address)) / 1000.0
 
     @property
@@ -218,20 +209,20 @@ class Hearing(Closing):
 
     def _samples(self, sound: Sound) -> array[int]:
         """The whole samples of a block, with what was left of the one before."""
-        if not isinstance(sound, (bytes, bytearray)):
-            view = _view(sound)
-            if view.itemsize == _SAMPLE and view.format in ("h", "<h", "=h", "@h"):
-                shape = view.shape or ()
-                if len(shape) != 1 and (len(shape) != 2 or shape[1] != self._channels):
-                    raise LabialError(f"a block of shape {shape} does not have {self._channels} channels")
-                sound = view.tobytes()
-                if sys.byteorder == "big" and view.format != "<h":
-                    sound = _swapped(sound)
-            elif view.format in ("B", "b", "c"):
-                sound = view.tobytes()
-            else:
-                raise TypeError(f"sound is bytes or int16, not items of the format {view.format!r}")
-        data = self._part + bytes(sound)
+        try:
+            view = memoryview(sound)
+        except TypeError:
+            raise TypeError(f"sound is bytes or int16, not {type(sound).__name__}") from None
+        data = view.tobytes()
+        if view.itemsize == _SAMPLE and view.format in ("h", "<h", "=h", "@h"):
+            shape = view.shape or ()
+            if len(shape) != 1 and (len(shape) != 2 or shape[1] != self._channels):
+                raise LabialError(f"a block of shape {shape} does not have {self._channels} channels")
+            if sys.byteorder == "big" and view.format != "<h":
+                data = _swapped(data)
+        elif view.format not in ("B", "b", "c"):
+            raise TypeError(f"sound is bytes or int16, not items of the format {view.format!r}")
+        data = self._part + data
         cut = len(data) - len(data) % (_SAMPLE * self._channels)
         self._part = data[cut:]
         samples = array("h", data[:cut])
@@ -253,13 +244,6 @@ class Hearing(Closing):
             name, first, length = shown[3 * k : 3 * k + 3]
             self._shown.append(Shown(self._names[name], first, length))
         return frames
-
-
-def _view(sound: Any) -> memoryview:
-    try:
-        return memoryview(sound)
-    except TypeError:
-        raise TypeError(f"sound is bytes or int16, not {type(sound).__name__}") from None
 
 
 def _swapped(data: bytes) -> bytes:

@@ -7,7 +7,7 @@ import math
 from array import array
 from typing import List, NamedTuple, Optional, Tuple, Union
 
-from labial.core.guard import Closing, alone, articulation, duration, number, whole
+from labial.core.guard import Closing, alone, articulation, duration, number, opened, whole
 from labial.core.library import (
     DONE,
     DURATION_MAX,
@@ -170,34 +170,30 @@ class Stream(Closing):
         self._items += items
         self._laughs += 1
 
-    @alone
+    @opened
     def use(self, model: Model) -> None:
         """Selects `model`, speech or laughter, for the next pushes; the motion fades over 8 frames, that of lips
         over fewer to a contact. Raises StreamError if its frame rate or search stride is not the stream's."""
-        self._open()
         self._current = self._place(expected(model))
 
-    @alone
+    @opened
     def end(self) -> None:
         """No more phonemes will come: after the frames of the last one the face comes to rest."""
-        self._open()
         self._ended = True
 
-    @alone
+    @opened
     def cancel(self, milliseconds: float = 200) -> None:
         """Drops everything that is not yet delivered, and eases back to the neutral face over so many milliseconds,
         rounded up to whole frames, 1 to 1,000; then the stream is done."""
-        self._open()
         length = math.ceil(duration(milliseconds))
         checked(self._library.mouth_cancel(self._address, length))
         self._forget_items()
         self._ended, self._done, self._told = True, False, True
 
-    @alone
+    @opened
     def restart(self) -> None:
         """Continues a stream that has ended or was cancelled: frame numbers continue, and frames fade in from the last
         one. Raises StreamError while frames of phonemes are still to come."""
-        self._open()
         if self._waiting():
             raise failure(ERROR_STATE, "restart")
         self._feed()
@@ -205,13 +201,12 @@ class Stream(Closing):
         self._forget_items()
         self._ended = self._done = self._told = False
 
-    @alone
+    @opened
     def articulation(self, percent: float) -> None:
         """How far the mouth moves, 0 to 200 percent of what the models learned, rounded to whole ones: 100 at first,
         50 a mumble, 130 a shout. Lips still meet in p, b, m. It may change at any time: frames that are taken in from
         now on come nearer to it by up to 10 percent each. A cancel or a restart keeps it. Raises LabialError for a
         number out of range."""
-        self._open()
         checked(self._library.mouth_articulation(self._address, articulation(percent)))
 
     # ---- Output
@@ -219,14 +214,13 @@ class Stream(Closing):
     def __iter__(self) -> Stream:
         return self
 
-    @alone
+    @opened
     def __next__(self) -> Frame:
-        self._open()
         if self._run(self._place_of_faps, 1):
             return Frame(self._number, tuple(self._faps), self._visemes())
         raise StopIteration
 
-    @alone
+    @opened
     def tick(self) -> Optional[Frame]:
         """The next frame or None, once per frame period: None before the first frame (``latency.delay`` ticks), while
         the stream waits for phonemes, and when it is done. After a wait, catch up by an extra call for each tick that
@@ -235,7 +229,6 @@ class Stream(Closing):
         After five ticks without a frame or a push the face comes to rest in twelve more, unless the stream is exact:
         these return frames with the number of the missing frame, which it then has itself.
         """
-        self._open()
         self._feed()
         result = checked(self._library.mouth_tick(self._address))
         self._done, self._starved = result == DONE, result == STARVED
@@ -245,11 +238,10 @@ class Stream(Closing):
         return Frame(self._number + (result != OK), tuple(self._library.mouth_faps(self._address)[:13]),
                      self._visemes())
 
-    @alone
+    @opened
     def drain(self, visemes: Optional[bytearray] = None) -> array[int]:
         """All frames that can be computed now, in one call of C: T times 13 int16, FAP units. The 15 shares of the
         sounds of each (:attr:`Frame.visemes`) are appended to `visemes`. ``labial.render`` makes frames of them."""
-        self._open()
         pieces, piece = array("h"), array("h", bytes(2 * 13 * _PIECE))
         shares = array("B", bytes(0 if visemes is None else VISEMES * _PIECE))
         while count := self._run(piece.buffer_info()[0], _PIECE, shares.buffer_info()[0] if shares else None):
@@ -269,9 +261,8 @@ class Stream(Closing):
         return self._exact
 
     @exact.setter
-    @alone
+    @opened
     def exact(self, exact: bool) -> None:
-        self._open()
         checked(self._library.mouth_exact(self._address, bool(exact)))
         self._exact = bool(exact)
 
@@ -281,10 +272,9 @@ class Stream(Closing):
         return self._starved
 
     @property
-    @alone
+    @opened
     def latency(self) -> Latency:
         """The stream's current latency."""
-        self._open()
         self._feed()
         core, at = self._library, self._address
         later = sum(self._items[_ITEM * self._used + 2::_ITEM])

@@ -13,7 +13,7 @@ import warnings
 from contextlib import suppress
 from typing import Any, AsyncIterator, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
-from labial.core.guard import Closing, alone, duration, number
+from labial.core.guard import Closing, alone, duration, number, opened
 from labial.core.library import CANCEL_MAX, ERROR_FULL, OK, PRONOUNCE, VISEMES, WAITING, checked, library, memory
 from labial.core.words import OwnWords, labels
 from labial.corpus import words
@@ -93,7 +93,7 @@ class Voice(Closing):
 
     # ---- What becomes known
 
-    @alone
+    @opened
     def feed(self, message: Any) -> None:
         """A message of the service: parsed JSON, an object of its client library, a list of these; text or bytes of
         JSON, of lines of JSON or of server-sent events. Messages without timings are passed over, and items that make
@@ -102,7 +102,6 @@ class Voice(Closing):
         Raises DataError for a message that is no JSON or beyond a limit of :mod:`labial.files.limits`, and TypeError
         for one of another type; what was known stays known.
         """
-        self._open()
         for heard in self._messages.read(message):
             counted = _CHAINED if heard.chained else _JOINED if heard.joins else _ABSOLUTE
             for told in heard.told:
@@ -110,32 +109,30 @@ class Voice(Closing):
                            heard.utterance, 0 if told.key is None else int(told.key) + 1,
                            round(heard.gap * 1000))
 
-    @alone
+    @opened
     def say(self, text: str, start: float, end: Optional[float] = None) -> None:
         """A word as it is written, with its punctuation, from `start` to `end`, seconds from the beginning of the
         utterance; without an end it lasts until the next word, or as long as it usually does.
 
         Raises LabialError for times that are negative, turned round or beyond a day, and for more than an hour.
         """
-        self._open()
         if not isinstance(text, str):
             raise TypeError(f"a word is a str, not {type(text).__name__}")
         item = _timed(text.strip(), start, end, f"{text!r:.40}")
         if text.strip():
             self._tell("words", [item])
 
-    @alone
+    @opened
     def push(self, phoneme: Union[str, int], start: float, end: float) -> None:
         """A phoneme, by its label or its number in the model, from `start` to `end`, seconds from the beginning of the
         utterance. Where an utterance has phonemes, its words are not read.
 
         Raises StreamError for an unknown label or number; LabialError as :meth:`say`.
         """
-        self._open()
         found = self._model.number(phoneme, self._labels, self._nearest)
         self._tell("phonemes", [_timed(found, start, _seconds(end), "a phoneme")])
 
-    @alone
+    @opened
     def begin(self, at: Optional[float] = None, utterance: Optional[str] = None) -> None:
         """The next utterance, whose sound begins when `at` seconds were heard: times that are told count from there.
 
@@ -144,31 +141,28 @@ class Voice(Closing):
         waits, since it was told before its sound began, is moved to `at`: the utterance of this name, or without a name
         the first one that is not over.
         """
-        self._open()
         self._checked(self._library.voice_begin(self._memory, -1.0 if at is None else _seconds(at),
                                                 self._identity(utterance)))
 
-    @alone
+    @opened
     def finish(self) -> None:
         """Nothing more follows: :attr:`done` tells when all was shown. What is told afterwards nevertheless begins the
         next utterance. If no message told timings, a warning says so."""
-        self._open()
         self._messages.expect_timings()
         self._checked(self._library.voice_finish(self._memory))
 
-    @alone
+    @opened
     def cancel(self, milliseconds: float = 200) -> None:
         """Drops all that is not shown yet, and eases to the neutral face over so many milliseconds, rounded up to whole
         frames, 1 to 1,000. What is told of the cancelled utterance is ignored until :meth:`begin`, and if the service
         tells which one that is, also afterwards."""
-        self._open()
         length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
         self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
         self._since, self._eased = time.monotonic(), 0
 
     # ---- What is shown
 
-    @alone
+    @opened
     def played(self, seconds: Optional[float]) -> List[Frame]:
         """The frames that became due since the last call, when so many seconds of the sound were heard; usually none
         to three.
@@ -178,7 +172,6 @@ class Voice(Closing):
         passes. More than a second after the last call, only the latest frame is returned. Raises LabialError for more
         than a year and what is no number.
         """
-        self._open()
         heard = -1.0 if seconds is None else number(seconds, "a time")
         if not heard <= _LATEST:
             raise LabialError(f"{heard:g} s is no time")
@@ -227,10 +220,9 @@ class Voice(Closing):
         return self._memory is not None and bool(self._library.voice_cancelled(self._memory))
 
     @property
-    @alone
+    @opened
     def time(self) -> float:
         """When the next frame is due, seconds of the sound."""
-        self._open()
         return int(self._library.voice_next(self._memory)) / self.fps
 
     @property
@@ -239,10 +231,9 @@ class Voice(Closing):
         return self._model.fps
 
     @property
-    @alone
+    @opened
     def stats(self) -> Stats:
         """What became so far of the messages and of all that was told."""
-        self._open()
         found = (ctypes.c_uint32 * 3)()
         self._library.voice_counts(self._memory, found)
         read = self._messages.stats

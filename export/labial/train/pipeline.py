@@ -163,9 +163,9 @@ def _stretches(material: Sequence[Recording], starts: Sequence[np.ndarray],
     return motion, begins
 
 
-def _setting(kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int,
-             look_ahead: float, search_stride: int, divide: Division, normalise: bool,
-             talker_variance: Optional[float] = None, symmetric: bool = True) -> _Setting:
+def _setting(kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], seed: int = 0,
+             look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE, divide: Division = lbg,
+             normalise: bool = False, talker_variance: Optional[float] = None, symmetric: bool = True) -> _Setting:
     if kind not in KINDS:
         raise LabialError(f"kind is {kind!r}, not one of {', '.join(KINDS)}")
     if method not in METHODS:
@@ -184,15 +184,13 @@ def _setting(kind: str, method: str, fps: int, codebook: Optional[int], componen
     talker_variance = talker_variance if extended else None
     return _Setting(PHONE_SETS[kind], extended, fps, codebook, components, seed, look_ahead,
                     search_stride if extended else 1, divide, extended or normalise,
-                    effects.penalties_of(talker_variance), SCALES if kind == "laughter" else Scales(), talker_variance,
-                    symmetric and extended)
+                    Penalties() if talker_variance is None else effects.PENALTIES,
+                    SCALES if kind == "laughter" else Scales(), talker_variance, symmetric and extended)
 
 
-def check_options(*, kind: str, method: str, fps: int, codebook: Optional[int], components: Optional[int], jobs: int,
-                  engine: Optional[str] = None, look_ahead: float = LOOK_AHEAD, search_stride: int = SEARCH_STRIDE,
-                  talker_variance: Optional[float] = None) -> None:
+def check_options(*, jobs: int, engine: Optional[str] = None, **options: Any) -> None:
     """Raises LabialError for options that :func:`train` would refuse; call it before reading a corpus."""
-    _setting(kind, method, fps, codebook, components, 0, look_ahead, search_stride, lbg, False, talker_variance)
+    _setting(**options)
     check_jobs(jobs)
     Workers(jobs, False, engine)
 
@@ -250,19 +248,19 @@ def _fit_shapes(setting: _Setting, material: Sequence[Recording], talkers: Dict[
         return _Shapes(none, np.full((phonemes, CHANNELS), -np.inf), np.zeros((phonemes, CHANNELS), dtype=bool))
     floor, contact = floors(material, setting.phone_set, setting.fps, free_corners=setting.talker_variance is not None)
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
-    penalties = setting.penalties
+    penalties, variance = setting.penalties, setting.talker_variance
     if setting.phone_set.kind != "speech":
         # Where lips rest depends on the talker in speech, but in laughter on its intensity, which the phonemes' grades
         # express, so that intercepts must not absorb it.
         penalties = replace(penalties, intercept=np.inf)
     asked = regressions.regression(material, tables, setting.viseme_class, plan.stand_in, setting.silence, setting.fps,
                                    penalties, setting.look_ahead, PAIR_KNOTS,
-                                   effects.pair_count_of(setting.talker_variance))
-    if setting.talker_variance is None:
+                                   regressions.PAIR_COUNT if variance is None else effects.PAIR_COUNT_SHARED)
+    if variance is None:
         kernels = regressions.fit_kernels(asked, material, choice)
         own = [kernels] * len(material)
     else:
-        kernels, of = effects.fit_talkers(asked, material, choice, setting.talker_variance, talkers)
+        kernels, of = effects.fit_talkers(asked, material, choice, variance, talkers)
         own = [of[item.talker] for item in material]
     moving = regressions.targets_without_floors(choice, own, material, setting.silence)
     targets = [raised(target, item.phoneme_at(), item.length, item.rest, setting.silence, floor, contact)[0]

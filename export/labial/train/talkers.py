@@ -54,16 +54,6 @@ def check_variance(variance: Optional[float]) -> None:
         raise LabialError(f"talker variance is {variance:g}, not above 0 and at most {LARGEST_VARIANCE:g}")
 
 
-def penalties_of(variance: Optional[float]) -> kernels.Penalties:
-    """The penalties of a regression with talkers of this variance, or without talkers."""
-    return kernels.Penalties() if variance is None else PENALTIES
-
-
-def pair_count_of(variance: Optional[float]) -> int:
-    """The least occurrences of a pair with talkers of this variance, or without talkers."""
-    return kernels.PAIR_COUNT if variance is None else PAIR_COUNT_SHARED
-
-
 def counted_once(item: Recording) -> Recording:
     """The recording with equal weights of all values for training, regardless of its corpus's weight."""
     return item if item.weight is None else replace(item, weight=(item.weight > 0).astype(np.float64))
@@ -214,7 +204,7 @@ def _deviation(model: Model, material: List[Recording], about: Dict[str, np.ndar
     choice = choose(tables, items.phoneme, items.duration, items.previous, items.next, soft=True)
     asked = kernels.Regression(tables, model.viseme_class, range(len(model.phonemes)), silence, model.fps,
                                model.kernel_lag, kernels.code_of(key[:, 0], key[:, 1], key[:, 2], len(model.phonemes)),
-                               penalties_of(float(about["variance"])), model.pair_shape.shape[1])
+                               PENALTIES, model.pair_shape.shape[1])
     made = kernels.targets_without_floors(choice, [shared] * len(material), material, silence)
     left = [replace(item, frames=item.frames - motion) for item, motion in zip(material, made)]
     covariance = covariance_of(asked.prior(), float(about["variance"]))
