@@ -37,6 +37,11 @@ class Table:
         """An error that names the file and the key."""
         return DataError(self.path, None, f"{self.prefix}{key}: {message}")
 
+    def refuse(self, wrong: bool, key: str, message: str) -> None:
+        """Raises an error that names the file and the key where something is `wrong`."""
+        if wrong:
+            raise self.error(key, message)
+
     def number(self, key: str) -> float:
         """A finite number; the key is required."""
         if key not in self.content:

@@ -171,9 +171,8 @@ def read(path: PathLike, name: str) -> Rig:
     top = Table(where, "", content, _TOP_KEYS)
     unit = _unit(top)
     numbers = _numbers(top)
-    outputs = content.get("output")
-    if not isinstance(outputs, dict) or not outputs:
-        raise top.error("output", "at least one table [output.NAME] is needed")
+    outputs: Any = content.get("output")
+    top.refuse(not isinstance(outputs, dict) or not outputs, "output", "at least one table [output.NAME] is needed")
     limits.refuse(path, "it has", len(outputs), limits.OUTPUTS, "outputs")
     return Rig(name, unit, tuple(_output(where, key, table, unit, numbers) for key, table in _named(top, outputs)),
                where, numbers)
@@ -182,29 +181,25 @@ def read(path: PathLike, name: str) -> Rig:
 def _numbers(top: Table) -> Numbers:
     """The numbers of a description; of one in degrees with its pulses at 0 and 180 degrees."""
     if top.content.get("unit") != "degrees":
-        if "pulses" in top.content:
-            raise top.error("pulses", "goes with the unit degrees")
+        top.refuse("pulses" in top.content, "pulses", "goes with the unit degrees")
         return Numbers()
     given = top.content.get("pulses", list(DEGREES))
-    if not isinstance(given, list) or len(given) != 2:
-        raise top.error("pulses", "is two pulses in microseconds, those at 0 and 180 degrees")
+    top.refuse(not isinstance(given, list) or len(given) != 2, "pulses",
+               "is two pulses in microseconds, those at 0 and 180 degrees")
     low, high = (top.as_number("pulses", value) for value in given)
-    if not PULSE_MIN <= low < high <= PULSE_MAX:
-        raise top.error("pulses", f"{low:g}, {high:g} are not two pulses from {PULSE_MIN:g} to {PULSE_MAX:g}, "
-                                  "the shorter one first")
+    top.refuse(not PULSE_MIN <= low < high <= PULSE_MAX, "pulses",
+               f"{low:g}, {high:g} are not two pulses from {PULSE_MIN:g} to {PULSE_MAX:g}, the shorter one first")
     return Numbers(True, low, (high - low) / 180.0)
 
 
 def _unit(top: Table) -> Unit:
     name = top.content.get("unit", "us")
-    if name not in (*UNITS, "degrees"):
-        raise top.error("unit", f"{name!r} is none of {', '.join(UNITS)}, degrees")
+    top.refuse(name not in (*UNITS, "degrees"), "unit", f"{name!r} is none of {', '.join(UNITS)}, degrees")
     if name == "degrees":  # for readers: the tables contain microseconds, which are finer
         name = "us"
     wanted = {"pca9685": "frequency", "counts": "clock"}.get(str(name))
     for key in ("frequency", "clock"):
-        if key in top.content and key != wanted:
-            raise top.error(key, f"has no meaning for the unit {name}")
+        top.refuse(key in top.content and key != wanted, key, f"has no meaning for the unit {name}")
     given = wanted == "clock" or wanted in top.content
     parameter = top.number(str(wanted)) if given else 50.0
     try:
@@ -216,38 +211,34 @@ def _unit(top: Table) -> Unit:
 def _named(top: Table, outputs: Mapping[str, object]) -> List[Tuple[str, Mapping[str, Any]]]:
     spelled: Dict[str, str] = {}
     for name, table in outputs.items():
-        if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name):
-            raise top.error(f"output.{name}", "an output's name is letters, digits and underscores, a letter first, "
-                                              "at most 32")
-        if name.upper() in spelled:
-            raise top.error(f"output.{name}", f"is the same in capitals as output.{spelled[name.upper()]}")
-        if name.upper() in ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE"):
-            raise top.error(f"output.{name}", "this name is taken by the generated header")
-        if not isinstance(table, dict):
-            raise top.error(f"output.{name}", "is not a table")
+        top.refuse(not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name), f"output.{name}",
+                   "an output's name is letters, digits and underscores, a letter first, at most 32")
+        top.refuse(name.upper() in spelled, f"output.{name}",
+                   f"is the same in capitals as output.{spelled.get(name.upper())}")
+        top.refuse(name.upper() in ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE"), f"output.{name}",
+                   "this name is taken by the generated header")
+        top.refuse(not isinstance(table, dict), f"output.{name}", "is not a table")
         spelled[name.upper()] = name
     return list(outputs.items())  # type: ignore[arg-type]
 
 
 def _source(table: Table) -> Tuple[Row, Optional[float]]:
     """The weights of ``from`` and, if it is one name, the reach that is usual for it."""
-    given = table.content.get("from")
+    given: Any = table.content.get("from")
     alone = isinstance(given, str)
     if alone:
         given = {given: 1.0}
-    if not isinstance(given, dict) or not given:
-        raise table.error("from", "is the name of a gesture or a FAP, or a table { NAME = WEIGHT, ... }")
+    table.refuse(not isinstance(given, dict) or not given, "from",
+                 "is the name of a gesture or a FAP, or a table { NAME = WEIGHT, ... }")
     weights, reach = (0.0,) * CHANNELS, None
     for name, weight in given.items():
         if name not in SOURCES:
             raise table.error("from", f"no gesture or FAP is called {name!r}{meant(name, SOURCES)}")
         number = table.as_number(f"from.{name}", weight)
-        if abs(number) > 1000:
-            raise table.error(f"from.{name}", f"{number:g} is not within -1000 .. 1000")
+        table.refuse(abs(number) > 1000, f"from.{name}", f"{number:g} is not within -1000 .. 1000")
         weights = tuple(total + number * weight for total, weight in zip(weights, SOURCES[name].weights))
         reach = SOURCES[name].reach if alone else None
-    if not any(weights):
-        raise table.error("from", "all weights are zero")
+    table.refuse(not any(weights), "from", "all weights are zero")
     return weights, reach
 
 
@@ -259,13 +250,10 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
     closed = table.number("closed") if "closed" in content else None
     rest = "closed" if closed is not None and "neutral" not in content else "neutral"  # the key of the neutral value
     neutral = table.number(rest)
-    if alone and "gain" in content:
-        raise table.error("gain", "goes with from: how many units is a FAP unit?")
-    if alone and "full" not in content:
-        raise table.error("full", "is needed, the value that sounds move it to at most")
-    if ("full" in content) == ("gain" in content):
-        raise table.error("full", "either full (the value at full extent) or gain (units per FAP unit) is needed"
-                                  + (", not both" if "full" in content else ""))
+    table.refuse(alone and "gain" in content, "gain", "goes with from: how many units is a FAP unit?")
+    table.refuse(alone and "full" not in content, "full", "is needed, the value that sounds move it to at most")
+    table.refuse(("full" in content) == ("gain" in content), "full", "either full (the value at full extent) or gain "
+                 "(units per FAP unit) is needed" + (", not both" if "full" in content else ""))
     invert = table.flag("invert", False)
     if "full" in content:
         full, gain = _full(table, neutral, rest, reach, alone)
@@ -273,11 +261,9 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
         minimum = table.number("minimum") if "minimum" in content else min(ends)
         maximum = table.number("maximum") if "maximum" in content else max(ends)
     else:
-        if "reach" in content:
-            raise table.error("reach", "goes with full, not with gain")
+        table.refuse("reach" in content, "reach", "goes with full, not with gain")
         gain, minimum, maximum = table.number("gain"), table.number("minimum"), table.number("maximum")
-        if gain == 0:
-            raise table.error("gain", "is zero: the output would not move")
+        table.refuse(gain == 0, "gain", "is zero: the output would not move")
     slew, acceleration, deadband = _movement(table, minimum, maximum)
     _check_values(table, unit, numbers, minimum, maximum)
     of, each = numbers.value, numbers.each
@@ -290,21 +276,17 @@ def _output(path: str, name: str, content: Mapping[str, Any], unit: Unit, number
 def _full(table: Table, neutral: float, rest: str, reach: Optional[float], alone: bool) -> Tuple[float, float]:
     """The value at full extent, and the units per FAP unit that lead there from the neutral value, which the key `rest`
     has: none for an output that follows sounds alone. `reach` is the usual one, where there is one."""
-    if table.flag("invert", False):
-        raise table.error("invert", "goes with gain; with full, say where full lies instead")
+    table.refuse(table.flag("invert", False), "invert", "goes with gain; with full, say where full lies instead")
     full = table.number("full")
-    if full == neutral:
-        raise table.error("full", f"is the same as {rest}: the output would not move")
+    table.refuse(full == neutral, "full", f"is the same as {rest}: the output would not move")
     if alone:
-        if "reach" in table.content:
-            raise table.error("reach", "goes with from: how many FAP units is full?")
+        table.refuse("reach" in table.content, "reach", "goes with from: how many FAP units is full?")
         return full, 0.0
     if "reach" in table.content:
         reach = table.number("reach")
     if reach is None:
         raise table.error("reach", "is missing: how many FAP units is full? Only gestures know it by themselves")
-    if not reach > 0:
-        raise table.error("reach", f"{reach:g} is not positive")
+    table.refuse(not reach > 0, "reach", f"{reach:g} is not positive")
     return full, (full - neutral) / reach
 
 
@@ -313,15 +295,11 @@ def _movement(table: Table, minimum: float, maximum: float) -> Tuple[float, floa
     slew, acceleration, deadband = (table.number(key) if key in table.content else 0.0
                                     for key in ("slew", "acceleration", "deadband"))
     for key, value in (("slew", slew), ("acceleration", acceleration)):
-        if key in table.content and value <= 0:
-            raise table.error(key, f"{value:g} is not positive; leave it out for no limit")
-    if deadband < 0:
-        raise table.error("deadband", f"{deadband:g} is negative")
-    if minimum > maximum:
-        raise table.error("minimum", f"{minimum:g} is above the maximum, {maximum:g}")
-    if deadband > maximum - minimum:
-        raise table.error("deadband", f"{deadband:g} is more than the travel from {minimum:g} to {maximum:g}: the "
-                                      "output would not move")
+        table.refuse(key in table.content and value <= 0, key, f"{value:g} is not positive; leave it out for no limit")
+    table.refuse(deadband < 0, "deadband", f"{deadband:g} is negative")
+    table.refuse(minimum > maximum, "minimum", f"{minimum:g} is above the maximum, {maximum:g}")
+    table.refuse(deadband > maximum - minimum, "deadband",
+                 f"{deadband:g} is more than the travel from {minimum:g} to {maximum:g}: the output would not move")
     return slew, acceleration, deadband
 
 
@@ -330,8 +308,7 @@ def _visemes(table: Table) -> Row:
     given = table.content.get("visemes")
     if given is None:
         return ()
-    if not isinstance(given, dict) or not given:
-        raise table.error("visemes", "is a table { VISEME = AMOUNT, ... }")
+    table.refuse(not isinstance(given, dict) or not given, "visemes", "is a table { VISEME = AMOUNT, ... }")
     for name in given:
         if name not in VISEMES:
             raise table.error("visemes", f"no viseme is called {name!r}{meant(name, VISEMES)}")
@@ -344,17 +321,15 @@ def _curve(table: Table, unit: Unit, numbers: Numbers, rest: str) -> Tuple[Tuple
     if "curve" not in table.content:
         return ()
     given, (least, most) = table.content["curve"], CURVE_POINTS
-    if not isinstance(given, list) or not least <= len(given) <= most:
-        raise table.error("curve", f"is a list of {least} to {most} points [VALUE, OPENING]")
+    table.refuse(not isinstance(given, list) or not least <= len(given) <= most, "curve",
+                 f"is a list of {least} to {most} points [VALUE, OPENING]")
     points: List[Tuple[float, float]] = []
     for number, point in enumerate(given, 1):
-        if not isinstance(point, list) or len(point) != 2:
-            raise table.error("curve", f"point {number} is not [VALUE, OPENING]")
+        table.refuse(not isinstance(point, list) or len(point) != 2, "curve", f"point {number} is not [VALUE, OPENING]")
         points.append((table.as_number("curve", point[0]), table.as_number("curve", point[1])))
         if unit.servo:
             _check_pulse(table, "curve", points[-1][0], numbers)
-    if "full" not in table.content:
-        raise table.error("curve", "goes with full, not with gain")
+    table.refuse("full" not in table.content, "curve", "goes with full, not with gain")
     points.sort()
     steps = [(after[0] - before[0], after[1] - before[1]) for before, after in zip(points, points[1:])]
     if any(value <= 0 for value, _ in steps) or not (all(opening > 0 for _, opening in steps)
@@ -362,9 +337,8 @@ def _curve(table: Table, unit: Unit, numbers: Numbers, rest: str) -> Tuple[Tuple
         raise table.error("curve", "from each value to the next larger one the opening must grow, or from each shrink")
     neutral, full = table.number(rest), table.number("full")
     for name, value in ((rest, neutral), ("full", full)):
-        if not points[0][0] <= value <= points[-1][0]:
-            raise table.error("curve", f"{name}, {value:g}, is not within {points[0][0]:g} .. {points[-1][0]:g}, where "
-                                       "the opening was measured")
+        table.refuse(not points[0][0] <= value <= points[-1][0], "curve", f"{name}, {value:g}, is not within "
+                     f"{points[0][0]:g} .. {points[-1][0]:g}, where the opening was measured")
     shut, wide = (_between(points, value) for value in (neutral, full))
     return tuple(sorted((neutral + (full - neutral) * (opening - shut) / (wide - shut), value)
                         for value, opening in points))
@@ -393,10 +367,10 @@ def _check_values(table: Table, unit: Unit, numbers: Numbers, minimum: float, ma
     `closed` that they lie within the limits."""
     given = {key: table.number(key) for key in _PLACES if key in table.content}
     for key, value in given.items():
-        if unit.name == "weight" and round(value * unit.scale) > unit.scale:
-            raise table.error(key, f"{value:g} is beyond 1: weights are 0 to 1")
+        table.refuse(unit.name == "weight" and round(value * unit.scale) > unit.scale, key,
+                     f"{value:g} is beyond 1: weights are 0 to 1")
         if unit.servo:
             _check_pulse(table, key, value, numbers)
     for key, value in given.items():
-        if (unit.servo or key == "closed") and not minimum <= value <= maximum:
-            raise table.error(key, f"{value:g} is not within {minimum:g} .. {maximum:g}")
+        table.refuse((unit.servo or key == "closed") and not minimum <= value <= maximum, key,
+                     f"{value:g} is not within {minimum:g} .. {maximum:g}")

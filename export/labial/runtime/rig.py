@@ -9,7 +9,8 @@ from collections import deque
 from functools import cache
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, NamedTuple, Protocol, Sequence, Tuple, Union
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Protocol, Sequence, Tuple, Union
 
 from labial.core.guard import Guard, alone
 from labial.core.library import VISEMES, checked, library, memory
@@ -68,13 +69,6 @@ def _shares(visemes: Iterable[int]) -> bytes:
     if len(shares) not in (0, VISEMES):
         raise LabialError(f"a frame has {VISEMES} shares of sounds, not {len(shares)}")
     return shares
-
-
-class _Kept(NamedTuple):
-    """A copy of a frame."""
-
-    faps: array[int]
-    visemes: bytes
 
 
 def _frames_after(following: Iterable[Union[int, Faps]]) -> Tuple[array[int], bytes]:
@@ -189,9 +183,9 @@ class Rig:
         Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
-        waiting: deque[_Kept] = deque()
+        waiting: deque[Any] = deque()  # copies
         for frame in frames:
-            waiting.append(_Kept(one_frame(frame), shares_of(frame)))
+            waiting.append(SimpleNamespace(faps=one_frame(frame), visemes=shares_of(frame)))
             if len(waiting) > count:
                 yield self.apply(waiting.popleft(), waiting)
         while waiting:

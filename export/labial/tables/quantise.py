@@ -10,7 +10,7 @@ import numpy as np
 from labial.corpus.labels import entries
 from labial.corpus.phonesets import LABEL_SETS
 from labial.defaults import PREDECESSORS
-from labial.errors import ModelError
+from labial.errors import ModelError, expect
 from labial.files.faps import CHANNELS
 from labial.tables import fixed
 from labial.tables.fixed import POSITION_MAX, POSITION_SCALE, weight_code, weight_code_below, weight_value
@@ -159,8 +159,7 @@ def _check_limits(model: Model) -> None:
               "taps": len(model.kernel_lag), "stride": model.search_stride,
               "reach": max([*np.abs(model.kernel_lag), 0])}
     for what, count in counts.items():
-        if count > LIMITS[what]:
-            raise ModelError(f"the model has {what} {count}, the library's limit is {LIMITS[what]}")
+        expect(count <= LIMITS[what], f"the model has {what} {count}, the library's limit is {LIMITS[what]}")
     _taps_behind(np.asarray(model.kernel_lag))
 
 
@@ -169,8 +168,8 @@ def _taps_behind(lags: np.ndarray) -> int:
     if not len(lags):
         return 0
     stride = int(lags[1] - lags[0]) if len(lags) > 1 else 1
-    if lags[0] > 0 or lags[-1] < 0 or lags[0] % stride:
-        raise ModelError("kernel lags must be multiples of their spacing, from 0 or before to 0 or after")
+    expect(lags[0] <= 0 <= lags[-1] and lags[0] % stride == 0,
+           "kernel lags must be multiples of their spacing, from 0 or before to 0 or after")
     return int(-lags[0] // stride)
 
 
@@ -225,8 +224,7 @@ def _protrusion(model: Model) -> Optional[np.ndarray]:
     if np.abs(values).max() > POSITION_MAX or np.abs(ends).max() > POSITION_MAX:
         raise ModelError(f"protrusion reaches beyond {POSITION_MAX // POSITION_SCALE} FAP units, the library's limit")
     low, gain = integer_range(model.protrusion_range)
-    if gain > 65535:
-        raise ModelError("protrusion_range is narrower than 9 FAP units, which is less than the tables hold")
+    expect(gain <= 65535, "protrusion_range is narrower than 9 FAP units, which is less than the tables hold")
     return np.array([low, gain, *values], dtype=np.int64)
 
 

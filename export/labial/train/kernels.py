@@ -73,14 +73,6 @@ def lags(fps: int, look_ahead: float = LOOK_AHEAD) -> np.ndarray:
     return np.arange(-behind, ahead + 1, dtype=np.int64) * spacing
 
 
-def kernel_prior(viseme_class: np.ndarray, taps: int, penalties: Penalties) -> np.ndarray:
-    """(P L, P L) inverse covariance of all phonemes' kernels of one channel, phoneme by phoneme, for a penalty of 1."""
-    member = viseme_class[:, None] == viseme_class[None, :]
-    between_phonemes = member + np.eye(len(viseme_class)) / penalties.residual
-    distance = np.abs(np.subtract.outer(np.arange(taps), np.arange(taps)))
-    return np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(penalties.smoothness**distance))
-
-
 def code_of(phoneme: np.ndarray, side: Union[int, np.ndarray], neighbour: np.ndarray, phonemes: int) -> np.ndarray:
     """A phoneme with its previous (`side` 0) or next neighbour (1) as one number, (2 phoneme + side) P + neighbour."""
     return (2 * phoneme + side) * phonemes + neighbour
@@ -120,24 +112,6 @@ def _design(material: Sequence[Recording], choice: Choice, deviation: np.ndarray
     part = knot_shares(lengths, knots)
     between = [diags(part[:, knot]) @ beside for knot in range(knots)]
     return hstack([onehot, share, slope, *between]).tocsr()
-
-
-def _blocks(material: Sequence[Recording], choice: Choice, silence: int, penalties: Penalties,
-            fps: int) -> Iterator[Tuple[Sequence[Recording], Choice, np.ndarray, np.ndarray]]:
-    """The material in blocks of `BLOCK` frames, which limits memory: some utterances, the components of their
-    occurrences, their motion (T, 13), FAP, and the weights (T, 13) of its values."""
-    first = occurrence = frames = 0
-    for last, item in enumerate(material, 1):
-        frames += len(item.frames)
-        if frames < BLOCK and last < len(material):
-            continue
-        part = material[first:last]
-        end = occurrence + sum(len(each.phoneme) for each in part)
-        weights = [each.weights * np.where(each.phoneme_at() == silence, penalties.silence, 1.0)[:, None] * 50.0 / fps
-                   for each in part]
-        yield (part, choice.of(slice(occurrence, end)), np.concatenate([each.frames for each in part]),
-               np.concatenate(weights))
-        first, occurrence, frames = last, end, 0
 
 
 def columns_alike(material: Sequence[Recording]) -> List[np.ndarray]:
@@ -195,13 +169,6 @@ class Kernels:
     pair_key: np.ndarray  #: (R, 3) int64: phoneme, side, neighbour
     pair_shape: np.ndarray  #: (R, K, 13) FAP
 
-    def pairs_at(self, item: Recording, silence: int) -> np.ndarray:
-        """(T, 13) FAP: the corrections of each phoneme of an utterance by its neighbours, frame by frame."""
-        around = neighbours(item.phoneme, silence)
-        added = pairs_beside(self.pair_key, self.pair_shape, item.phoneme, *around)
-        shares = knot_shares(item.length, self.pair_shape.shape[1])
-        return np.einsum("tk,tkc->tc", shares, np.repeat(added, item.length, axis=0))
-
 
 @dataclass(frozen=True)
 class Regression:
@@ -230,17 +197,37 @@ class Regression:
     def prior(self) -> np.ndarray:
         """(D, D) inverse prior covariance of the coefficients of a channel."""
         _, components, knots = self.sizes
-        others = np.repeat([self.penalties.shape, self.penalties.slope, self.penalties.pair],
-                           [components, components, knots])
-        kernels = self.penalties.kernel * kernel_prior(self.viseme_class, len(self.lag), self.penalties)
+        given, taps = self.penalties, np.arange(len(self.lag))
+        member = self.viseme_class[:, None] == self.viseme_class
+        between_phonemes = member + np.eye(len(member)) / given.residual
+        along = given.smoothness ** np.abs(np.subtract.outer(taps, taps))
+        kernels = given.kernel * np.kron(np.linalg.inv(between_phonemes), np.linalg.inv(along))
+        others = np.repeat([given.shape, given.slope, given.pair], [components, components, knots])
         return block_diag(kernels, np.diag(others))
+
+    def blocks(self, material: Sequence[Recording],
+               choice: Choice) -> Iterator[Tuple[Sequence[Recording], Choice, np.ndarray, np.ndarray]]:
+        """The material in blocks of `BLOCK` frames, which limits memory: some utterances, the components of their
+        occurrences, their motion (T, 13), FAP, and the weights (T, 13) of its values."""
+        first = occurrence = frames = 0
+        for last, item in enumerate(material, 1):
+            frames += len(item.frames)
+            if frames < BLOCK and last < len(material):
+                continue
+            part = material[first:last]
+            end = occurrence + sum(len(each.phoneme) for each in part)
+            weights = [each.weights * np.where(each.sounds(self.silence), 1.0, self.penalties.silence)[:, None]
+                       * 50.0 / self.fps for each in part]
+            yield (part, choice.of(slice(occurrence, end)), np.concatenate([each.frames for each in part]),
+                   np.concatenate(weights))
+            first, occurrence, frames = last, end, 0
 
     def sums(self, material: Sequence[Recording], choice: Choice, base: np.ndarray) -> List[_Sums]:
         """The sums of the regression over `material`, whose motion is relative to `base` (13,) FAP; `choice` are its
         occurrences' components."""
         taps, components, knots = self.sizes
         groups = [_Sums(taps + 2 * components + knots, channels) for channels in columns_alike(material)]
-        for part, own, motion, weight in _blocks(material, choice, self.silence, self.penalties, self.fps):
+        for part, own, motion, weight in self.blocks(material, choice):
             design = _design(part, own, self.deviation, len(self.viseme_class), self.lag, self.silence, self.pairs,
                              self.knots)
             utterance = np.repeat(np.arange(len(part)), [len(item.frames) for item in part])
@@ -252,7 +239,7 @@ class Regression:
     def base(self, material: Sequence[Recording], choice: Choice) -> np.ndarray:
         """(13,) FAP: the weighted mean of the motion."""
         total = weight = np.zeros((0, CHANNELS))
-        for _, _, motion, own in _blocks(material, choice, self.silence, self.penalties, self.fps):
+        for _, _, motion, own in self.blocks(material, choice):
             total = np.concatenate([total, motion * own]).sum(axis=0, keepdims=True)  # row by row, as a sum of all
             weight = np.concatenate([weight, own]).sum(axis=0, keepdims=True)
         return total[0] / weight[0]
@@ -304,6 +291,9 @@ def targets_without_floors(choice: Choice, own: Sequence[Kernels], material: Seq
     for fitted, item in zip(own, material):
         rows = slice(first, first + len(item.phoneme))
         first = rows.stop
-        held = np.repeat(shapes(fitted.tables, choice.of(rows)), item.length, axis=0) + fitted.pairs_at(item, silence)
+        added = pairs_beside(fitted.pair_key, fitted.pair_shape, item.phoneme, *neighbours(item.phoneme, silence))
+        part = knot_shares(item.length, fitted.pair_shape.shape[1])
+        held = (np.repeat(shapes(fitted.tables, choice.of(rows)), item.length, axis=0)
+                + np.einsum("tk,tkc->tc", part, np.repeat(added, item.length, axis=0)))
         result.append(add_kernels(held, item.phoneme_at(), fitted.kernel, fitted.lag, silence))
     return result

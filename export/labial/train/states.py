@@ -75,6 +75,12 @@ def state_moments(values: np.ndarray, weight: np.ndarray, path: np.ndarray,
     return mean, (squares + PRIOR_FRAMES * pooled) / (count + PRIOR_FRAMES)
 
 
+def _feature_moments(rows: np.ndarray, weight: np.ndarray, path: np.ndarray, prior: np.ndarray) -> List[np.ndarray]:
+    """(Q, 3) each: :func:`state_moments` of the three features (n, 3), whose prior means are (Q, 3)."""
+    moments = [state_moments(rows[:, k], weight, path, prior[:, k]) for k in range(3)]
+    return [np.stack(items, axis=1) for items in zip(*moments)]
+
+
 @dataclass(frozen=True)
 class DecodedChannel:
     """The frames of all utterances in one channel, and what they say of each state's three features."""
@@ -95,9 +101,7 @@ def decoded_channel(tables: StateTables, channel: int, paths: Sequence[np.ndarra
                                       for items in (paths, targets, human, weights))
     rows = np.concatenate([features(item[:, channel]) for item in human])
     floor = np.maximum(VARIANCE_FLOOR * rows[weight > 0].var(axis=0), 1e-6)
-    moments = [state_moments(rows[:, feature], weight, states, tables.state_mean[channel, :, feature])
-               for feature in range(3)]
-    mean, variance = (np.stack(items, axis=1) for items in zip(*moments))
+    mean, variance = _feature_moments(rows, weight, states, tables.state_mean[channel])
     return DecodedChannel(states, target, motion, weight, mean, variance, floor)
 
 
@@ -135,8 +139,7 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
     most = DYNAMIC_RANGE / 2 * hold.min(axis=1, keepdims=True)
     hold_share = np.minimum(1.0, most / hold)
     moving_share = np.minimum(1.0, most / moving)
-    limited = precision * np.stack([hold_share, moving_share, moving_share], axis=-1)
-    return limited, anchor * hold_share
+    return precision * np.stack([hold_share, moving_share, moving_share], axis=-1), anchor * hold_share
 
 
 # ---- Tracking states (docs/method.md) --------------------------------------------------------------------------------
@@ -162,41 +165,30 @@ class ChannelTask:
     divide: Division
 
 
-@dataclass(frozen=True)
-class Chain:
-    """One channel's states, in the order of their means, and what targets are in them."""
-
-    book: Codebook
-    mean: np.ndarray  #: (Q,) FAP, ascending, of the targets
-    variance: np.ndarray  #: (Q,) FAP^2
-
-
-def chain(task: ChannelTask) -> Chain:
-    """The chain of one channel."""
+def chain(task: ChannelTask) -> Tuple[Codebook, np.ndarray, np.ndarray]:
+    """One channel's states, in the order of their means, and of the targets in them the means (Q,), FAP, ascending, and
+    the variances (Q,), FAP^2."""
     motion, targets = np.concatenate(task.motion), np.concatenate(task.targets)
     points = np.concatenate([features(item) for item in task.motion])
     overall = points.var(axis=0)
     scale = max(float(np.sqrt(overall[0])), 1e-6)
     centres = scale * np.sort(task.divide(motion[:, None] / scale, task.size)[0][:, 0])
     cell = np.searchsorted((centres[1:] + centres[:-1]) / 2, motion)
-    prior = np.concatenate([centres[:, None], np.zeros((task.size, 2))], axis=1)
-    moments = [state_moments(points[:, k], np.ones(len(cell)), cell, prior[:, k]) for k in range(3)]
-    mean, variance = (np.stack(items, axis=1) for items in zip(*moments))
-    seen, strayed = state_moments(targets, np.ones(len(cell)), cell, centres)
+    once, least = np.ones(len(cell)), np.maximum(VARIANCE_FLOOR * overall, 1e-6)
+    prior = np.pad(centres[:, None], [(0, 0), (0, 2)])
+    mean, variance = _feature_moments(points, once, cell, prior)
+    seen, strayed = state_moments(targets, once, cell, centres)
     paths = np.split(cell, np.cumsum([len(item) for item in task.motion])[:-1])
-    book = Codebook(mean=mean, variance=np.maximum(variance, np.maximum(VARIANCE_FLOOR * overall, 1e-6)),
-                    count=np.bincount(cell, minlength=task.size),
+    book = Codebook(mean=mean, variance=np.maximum(variance, least), count=np.bincount(cell, minlength=task.size),
                     log_transition=transitions(paths, task.size, task.stride),
                     log_initial=initials(paths, task.begins, task.size))
-    least = max(VARIANCE_FLOOR * float(overall[0]), 1e-6)
-    return Chain(book, np.maximum.accumulate(seen), ALIKE * np.maximum(strayed, least))
+    return book, np.maximum.accumulate(seen), ALIKE * np.maximum(strayed, least[0])
 
 
-def chain_tables(chains: Sequence[Chain], stride: int) -> StateTables:
+def chain_tables(chains: Sequence[Tuple[Codebook, np.ndarray, np.ndarray]], stride: int) -> StateTables:
     """The tables of all channels, with which targets are decoded."""
-    return replace(codebook_tables([item.book for item in chains], stride),
-                   emission_mean=np.stack([item.mean for item in chains]),
-                   emission_variance=np.stack([item.variance for item in chains]))
+    books, means, variances = zip(*chains)
+    return replace(codebook_tables(books, stride), emission_mean=np.stack(means), emission_variance=np.stack(variances))
 
 
 def balance_states(tables: StateTables, paths: Sequence[np.ndarray], targets: Sequence[np.ndarray],
