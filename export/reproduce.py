@@ -41,6 +41,7 @@ PAGE = ROOT / "docs" / "reproduction.md"
 #: Columns of the page's table of the first split: title, measure, digits.
 COLUMNS = (("diff", "diff/mean", 4), ("correlation", "correlation/mean", 3), ("amplitude", "amplitude/mean", 3),
            ("closure", "closure/rate", 3), ("jitter", "jitter", 3), ("seam", "seam/mean", 3))
+HEADING = "| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |"
 
 
 def run(*arguments: str) -> None:
@@ -104,7 +105,7 @@ def first_split() -> str:
 
     (corpus,) = read_corpora([CORPORA / "grid_s1"])
     (outcome,) = evaluate(corpus, Options(splits=1))
-    rows = ["| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
+    rows = [HEADING, "|---" * (len(COLUMNS) + 1) + "|"]
     for method, values in outcome.measures.items():
         shown = ((values.get(measure, math.nan), digits) for _, measure, digits in COLUMNS)
         cells = ("-" if math.isnan(value) else f"{value:.{digits}f}" for value, digits in shown)
@@ -121,8 +122,7 @@ def build_runtime(folder: Path) -> None:
 
 def committed_split() -> str:
     """The table in docs/reproduction.md."""
-    heading = re.escape("| method | " + " | ".join(name for name, _, _ in COLUMNS) + " |")
-    found = re.search(rf"^{heading}\n(?:\|.*\n)+", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
+    found = re.search(rf"^{re.escape(HEADING)}\n(?:\|.*\n)+", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
     return found[0] if found else ""
 
 

@@ -209,13 +209,6 @@ def _avr_check(name: str, data: np.ndarray, cut: Optional[Sequence[Part]]) -> st
 """
 
 
-def check_names(rig: Rig) -> None:
-    """Raises DataError for an output that is called as one of the header's own calls and constants."""
-    for output in rig.outputs:
-        if output.name.lower() in ("begin", "next", "bytes", "frames", "parts", "milliseconds"):
-            raise DataError(rig.path, None, f"output.{output.name}: this name is taken by the generated header")
-
-
 #: The player, which is written beside each track.
 PLAYER = "labial_player.h"
 
@@ -246,9 +239,11 @@ def bake(source: Source, output: str, kind: str, rig: Optional[str] = None, name
     else:
         face = read(rig, name) if rig is not None else JAW
         table = convert(face)
-        check_names(face)
+        for row in table:
+            if row.name.lower() in ("begin", "next", "bytes", "frames", "parts", "milliseconds"):
+                raise DataError(face.path, None, f"output.{row.name}: this name is taken by the generated header")
         motion = read_track(source)
-        still = [output.name for output in face.outputs if output.visemes]
+        still = [row.name for row in table if row.visemes]
         if still and motion.shares is None:
             warnings.warn(f"{source.path}: frames do not tell their sounds, which {', '.join(still)} of {rig} "
                           f"follow{'s' * (len(still) == 1)}; phoneme timings do", stacklevel=2)

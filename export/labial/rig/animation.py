@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import json
 import re
-from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, Sequence, TextIO, Tuple
+from typing import TYPE_CHECKING, Callable, Dict, Iterable, NamedTuple, Optional, Sequence, TextIO, Tuple, Union
 
 from labial.files.faps import CHANNELS, FAP_COLUMNS, FAP_NUMBERS
 from labial.rig import FACES, description_of
@@ -115,13 +115,13 @@ def _live_link_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> No
         out.write(",".join((timecode, str(len(LIVE_LINK)), *(f"{value:.3f}" for value in row))) + "\n")
 
 
-def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Optional[Rig] = None,
+def _json_rows(out: TextIO, frames: np.ndarray, first: int, fps: int, *, rig: Union[Rig, str] = "arkit",
                with_faps: bool = True, move: Optional[Mover] = None) -> None:
-    """One JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and under the rig's name
-    (ARKit's where none is given) its outputs, as `outputs` gives them, or `move`."""
+    """One JSON object per line: frame, time in seconds, faps unless `with_faps` is False, and under the rig's name its
+    outputs, as `outputs` gives them, or `move`. `rig` may be the name of a built-in one."""
     import numpy as np
 
-    rig = rig or face("arkit")
+    rig = face(rig) if isinstance(rig, str) else rig
     frames, shares = _parts_of(frames)
     values = move(frames, shares, first) if move else outputs(rig, frames, shares)
     for number, (frame, row) in enumerate(zip(frames, np.stack(list(values.values()), axis=1)), first):
@@ -140,10 +140,6 @@ def _csv_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     from labial.files.frames import write_csv_rows
 
     write_csv_rows(out, frames[:, :CHANNELS], first, fps)
-
-
-def _weight_rows(name: str, out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
-    _json_rows(out, frames, first, fps, rig=face(name), with_faps=False)
 
 
 class Format(NamedTuple):
@@ -177,6 +173,6 @@ FORMATS: Dict[str, Format] = {
     "livelink": Format("Live Link Face CSV, ARKit's blendshapes", _live_link_rows,
                        lambda *_: ",".join(("Timecode", "BlendShapeCount", *LIVE_LINK)) + "\n"),
     "jsonl": Format("FAPs and ARKit's blendshapes, a line of JSON per frame", _json_rows),
-    **{name: Format("weights alone, a line of JSON per frame", functools.partial(_weight_rows, name))
-       for name in FACES},
+    **{name: Format("weights alone, a line of JSON per frame",
+                    functools.partial(_json_rows, rig=name, with_faps=False)) for name in FACES},
 }
