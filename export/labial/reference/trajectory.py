@@ -1,10 +1,6 @@
-"""States to motion: equation 3 of the paper, with anchors, factored frame by frame (``lib/trajectory.c``).
-
-The matrix W' U^-1 W + A is pentadiagonal. Each of its rows sums to the hold of its frame, the weight of the static
-feature plus that of the anchor, since constants have neither delta nor delta-delta. So the matrix is factored as L D L'
-by means of its row sums. In the backward pass each frame continues the motion of the frames after it, drawn by a
-fraction (rho) towards the position that it would have if all frames after it were equal to it.
-"""
+"""States to motion: equation 3 of the paper, with anchors, factored frame by frame (``lib/trajectory.c``; DESIGN.md, The
+solver). In the backward pass each frame continues the motion of the frames after it, drawn by a fraction (rho) towards
+the position that it would have if all frames after it were equal to it."""
 
 from __future__ import annotations
 

@@ -1,12 +1,10 @@
-"""The Viterbi search for a state path, decided as the frames come (docs/method.md, Units and search;
-``lib/viterbi.c``).
+"""The Viterbi search for a state path, decided as the frames come (docs/method.md, The run-time's search; DESIGN.md,
+Numbers on the device; ``lib/viterbi.c``).
 
 Each channel has a state for every `stride` frames, a *block*, and a grid of its own: a block ends with every frame k
-for which k and the channel's number leave the same remainder by `stride`, and with the last frame. So in each tick some
-of the channels take a step. A step scores a window of states, those around the one whose mean is nearest to the target;
-states are sorted by mean. Without a lag, a frame's state is the best one of its block. With a lag, it is found by
-tracing back from the best state of the block some frames later, or at the unit's end. Scores continue from block to
-block, but at the end of a unit only its best state is kept.
+for which k and the channel's number leave the same remainder by `stride`, and with the last frame. A step scores a
+window of states, those around the one whose mean is nearest to the target; states are sorted by mean. With a lag, a
+frame's state is found by tracing back from the best state of the block some frames later, or at the unit's end.
 """
 
 from __future__ import annotations
