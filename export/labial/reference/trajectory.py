@@ -1,6 +1,6 @@
-"""States to motion: equation 3 of the paper, with anchors, factored frame by frame (``lib/trajectory.c``; DESIGN.md, The
-solver). In the backward pass each frame continues the motion of the frames after it, drawn by a fraction (rho) towards
-the position that it would have if all frames after it were equal to it."""
+"""States to motion: equation 3 of the paper, with anchors, factored frame by frame (``lib/trajectory.c``; DESIGN.md).
+In the backward pass each frame continues the motion of the frames after it, drawn by a fraction (rho) towards the
+position that it would have if all frames after it were equal to it."""
 
 from __future__ import annotations
 
