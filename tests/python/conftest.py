@@ -12,6 +12,7 @@ from typing import Dict, Iterator, List, Set
 import pytest
 
 from browser import CHROMIUM, REASON, Browser
+from npm import MISSING, package
 
 #: Whose modules tests import, behind those of this folder.
 ROOT = Path(__file__).resolve().parents[2]
@@ -69,6 +70,14 @@ def few_streams(monkeypatch: pytest.MonkeyPatch) -> None:
 
     every = phones.drawn_streams
     monkeypatch.setattr(phones, "drawn_streams", lambda model: every(model, 2))
+
+
+@pytest.fixture(scope="session")
+def npm_package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the npm package; those of the others lie beside it."""
+    if MISSING:
+        pytest.skip(MISSING)
+    return package(tmp_path_factory.mktemp("npm") / "build")
 
 
 @pytest.fixture(scope="module")

@@ -3,6 +3,8 @@ and the tools of npm that tests use."""
 
 from __future__ import annotations
 
+import atexit
+import functools
 import hashlib
 import json
 import os
@@ -91,12 +93,29 @@ def node(version: int) -> Path:
     return tools() / "node_modules" / f"node-{version}" / "bin" / "node"
 
 
+def named(package: Path, name: str) -> Path:
+    """The folder of the package of this name, beside that of labial."""
+    return package.with_name(package.name + name[len("labial"):])
+
+
+def lay(package: Path, folder: Path, *names: str) -> None:
+    """Lays the packages of these names into `folder`/node_modules, without npm."""
+    for name in names:
+        shutil.copytree(named(package, name), folder / "node_modules" / name)
+
+
+@functools.cache
+def packed(package: Path) -> Path:
+    """A folder with the packages as ``npm pack`` and ``npm install`` leave them."""
+    folder = Path(tempfile.mkdtemp(prefix="labial-"))
+    atexit.register(shutil.rmtree, folder)
+    for name in ("labial", "labial-laughter", "labial-hearing", "labial-words"):
+        archive = run(NPM, "pack", "--silent", "--pack-destination", folder, cwd=named(package, name))
+        shutil.unpack_archive(folder / archive.strip().splitlines()[-1], folder)
+        (folder / "package").rename(folder / name)
+    return folder
+
+
 def install(package: Path, folder: Path) -> None:
-    """Packs the packages and lays them into `folder`/node_modules as ``npm install`` does."""
-    own = folder / "node_modules"
-    own.mkdir(parents=True)
-    others = (package.with_name(f"{package.name}-{name}") for name in ("laughter", "hearing", "words"))
-    for source in (package, *others):
-        name = run(NPM, "pack", "--silent", "--pack-destination", folder, cwd=source).strip().splitlines()[-1]
-        shutil.unpack_archive(folder / name, own)
-        (own / "package").rename(own / name.rsplit("-", 1)[0])
+    """Lays the packages into `folder`/node_modules as ``npm install`` does."""
+    shutil.copytree(packed(package), folder / "node_modules", ignore=shutil.ignore_patterns("*.tgz"))

@@ -9,11 +9,10 @@ from typing import Any, Iterator
 
 import pytest
 
-from browser import CHROMIUM, REASON, Browser, Page, PageFailed, served
-from npm import MISSING, package
+from browser import Browser, Page, PageFailed, served
+from npm import lay
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(not CHROMIUM, reason=REASON),
-              pytest.mark.skipif(bool(MISSING), reason=MISSING)]  # fmt: skip
+pytestmark = pytest.mark.slow
 
 #: Nothing but the page's own files, no text as script or markup.
 STRICT = ("default-src 'none'; connect-src 'self'; style-src 'self'; script-src 'self'{}; media-src 'self'; "
@@ -44,13 +43,11 @@ window.ready = true;
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The packages, and copies of them as another package brings them."""
     folder = tmp_path_factory.mktemp("elements") / "page"
-    built = package(tmp_path_factory.mktemp("npm"))
-    for name in ("labial", "labial-hearing", "labial-words"):
-        for place in ("node_modules", "copy"):
-            shutil.copytree(built.with_name(built.name + name[6:]), folder / place / name)
+    lay(npm_package, folder, "labial", "labial-hearing", "labial-words")
+    shutil.copytree(folder / "node_modules", folder / "copy")
     (folder / "page.js").write_text(SCRIPT, encoding="utf-8")
     for name, wasm in (("strict", " 'wasm-unsafe-eval'"), ("without", "")):
         (folder / f"{name}.html").write_text(PAGE.format(policy=STRICT.format(wasm)), encoding="utf-8")

@@ -11,17 +11,16 @@ from typing import Any, Dict, Iterator
 import numpy as np
 import pytest
 
-from browser import CHROMIUM, REASON, Browser, Page, served
+from browser import Browser, Page, served
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
-from npm import MISSING, package
+from npm import lay
 from packages import SOURCE
 
 FLITE = shutil.which("flite")
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(not CHROMIUM, reason=REASON),
-              pytest.mark.skipif(bool(MISSING), reason=MISSING),
-              pytest.mark.skipif(not FLITE, reason="needs flite: install the Debian package flite")]  # fmt: skip
+pytestmark = [pytest.mark.slow,
+              pytest.mark.skipif(not FLITE, reason="needs flite: install the Debian package flite")]
 
 TEXT = "Mama may be happy. Papa saw a boat by the water."
 FPS = 50
@@ -108,22 +107,13 @@ window.ready = true;
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page, the voice and the packages."""
     folder = tmp_path_factory.mktemp("hearing") / "page"
-    built = package(tmp_path_factory.mktemp("npm"))
-    for name in ("labial", "labial-hearing", "labial-hearing-host"):
-        shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
+    lay(npm_package, folder, "labial", "labial-hearing", "labial-hearing-host")
     (folder / "index.html").write_text(PAGE, encoding="utf-8")
     subprocess.run([str(FLITE), "-voice", "slt", "-t", TEXT, "-o", str(folder / "voice.wav")], check=True, timeout=60)
     return folder
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """A browser for the tests of this file."""
-    with Browser(tmp_path_factory.mktemp("browser") / "profile") as started:
-        yield started
 
 
 @pytest.fixture

@@ -4,23 +4,21 @@ where lips are held to the sound that leaves for the loudspeaker."""
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from pathlib import Path
-from typing import Any, Dict, Iterator, List
+from typing import Any, Dict, Iterator
 
 import numpy as np
 import pytest
 
 import labial
-from browser import CHROMIUM, REASON, Browser, Page, served
+from browser import Browser, Page, served
 from messages import RATE, answers, elevenlabs
-from npm import TOOLS_MISSING, node, package
+from npm import TOOLS_MISSING, lay, node
 from packages import SOURCE, needs_runtime
 from pages import parse
 
-pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(not CHROMIUM, reason=REASON),
-              pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)]  # fmt: skip
+pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)]
 
 TEXT = "Mama may go. Papa saw a boat."
 FPS = 50
@@ -94,12 +92,10 @@ Object.assign(window, { labial, ready: true });
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The code of docs/streams.md and the packages."""
     folder = tmp_path_factory.mktemp("voice") / "site"
-    built = package(tmp_path_factory.mktemp("npm"))
-    for name in ("labial", "labial-words"):
-        shutil.copytree(built.with_name(built.name + name[6:]), folder / "node_modules" / name)
+    lay(npm_package, folder, "labial", "labial-words")
     for block in parse(SOURCE / "docs" / "streams.md"):
         if block.name:
             (folder / block.name).write_text(block.text, encoding="utf-8")
@@ -212,7 +208,7 @@ def test_an_answer_that_begins_at_once_can_be_interrupted(page: Page) -> None:
 
 def test_stand_in_is_what_readers_expect() -> None:
     """Each sentence is a message whose times begin at 0, as the sample of ElevenLabs' web socket has it."""
-    found: List[Dict[str, Any]] = answers(TEXT)
+    found = answers(TEXT)
     assert [message["isFinal"] for message in found] == [None, None, True]
     total = sum(len(message["alignment"]["chars"]) for message in found[:-1])
     timings = labial.read_timings(found)

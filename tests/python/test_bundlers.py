@@ -5,6 +5,7 @@ labial-say's. And their types."""
 from __future__ import annotations
 
 import gzip
+import itertools
 import json
 import os
 import re
@@ -18,11 +19,11 @@ import numpy as np
 import pytest
 
 import labial
-from browser import CHROMIUM, REASON, Browser, served
+from browser import Browser, served
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
-from npm import FOLDER, TOOLS_MISSING, install, node, package, tools
+from npm import FOLDER, TOOLS_MISSING, install, node, tools
 from packages import SOURCE, run
 from pages import parse
 from test_npm import SAY, said
@@ -38,42 +39,31 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS_MISSING), reason=T
 
 
 @pytest.fixture(scope="module")
-def app(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def app(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The app, with the packages installed."""
     folder = tmp_path_factory.mktemp("app") / "app"
     shutil.copytree(FOLDER / "app", folder)
     (folder / "package.json").write_text('{ "type": "module" }')
-    install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
+    install(npm_package, folder)
     return folder
 
 
 @pytest.fixture(scope="module")
-def frames() -> List[int]:
-    """What labial-say makes of the word and the laugh, 13 FAPs after 13 FAPs."""
+def wanted() -> List[Any]:
+    """What a server prints: what labial-say makes of the word and the laugh, 13 FAPs after 13 FAPs; what the exporter's
+    integers hear in the sound of lips.js, by both models; what Python makes of its words, phonemes and their ends."""
     if not SAY:
         pytest.skip("LABIAL_SAY does not name the built labial-say")
-    return [value for row in said(WORD, "faps") for value in row]
-
-
-@pytest.fixture(scope="module")
-def heard() -> List[int]:
-    """What the exporter's integers hear in the sound of lips.js, by both models."""
     i = np.arange(16000)
     sound = np.where(i % 400 < 200, i * i % 8191, -(i * i % 8191)).astype(np.int16)
-    models = ((name, load(SOURCE / "export" / "models" / f"{name}.npz")) for name in ("hear_small", "hear_large"))
-    return [value for name, model in models
-            for value in integer.delivered(quantise(model, name), sound).faps.ravel().tolist()]  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def spoken() -> List[Any]:
-    """What Python makes of the words of lips.js: phonemes, and when they end."""
-    moment = 0
-    found: List[Any] = []
-    for label, length in labial.word_timings([("Maybe,", 100, 500), ("people!", 750, None)]):
-        moment += length
-        found += ["" if label == "SIL" else label, moment / 1000]
-    return found
+    heard: List[int] = []
+    for name in ("hear_small", "hear_large"):
+        trained = load(SOURCE / "export" / "models" / f"{name}.npz")
+        heard += integer.delivered(quantise(trained, name), sound).faps.ravel().tolist()
+    timings = labial.word_timings([("Maybe,", 100, 500), ("people!", 750, None)])
+    ends = itertools.accumulate(length for _, length in timings)
+    spoken = [item for (label, _), end in zip(timings, ends) for item in ("" if label == "SIL" else label, end / 1000)]
+    return [[value for row in said(WORD, "faps") for value in row], heard, spoken]
 
 
 @pytest.fixture(scope="module", params=BUNDLERS)
@@ -84,15 +74,18 @@ def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.T
     return out
 
 
-def results(browser: Browser, folder: Path, found: bool) -> Any:
-    """What the page of `folder` finds in each place; `found`, whether labial-hearing's AudioWorklet is a file there."""
+def check_page(browser: Browser, folder: Path, wanted: List[Any], found: bool) -> None:
+    """Holds what the page of `folder` finds in each place to `wanted`; `found`: labial-hearing's AudioWorklet is a file
+    there."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
         page.wait_for("Object.keys(window.results ?? {}).length === 7")
         assert found is False or page.errors() == []
         seen = page.evaluate("results")
         assert seen.pop("tapped") == (["http"] if found else ["http", "blob"])
-        return seen
+    frames, heard, spoken = wanted
+    assert seen.pop("element") > 3
+    assert seen == {"hearing": heard, "words": spoken, "page": frames, "worker": frames, "worklet": frames + spoken}
 
 
 def printed(program: Path, script: Path) -> Any:
@@ -103,23 +96,19 @@ def printed(program: Path, script: Path) -> Any:
     return json.loads(done.stdout)
 
 
-def test_bundles_run_in_chromium(
-    bundle: Path, browser: Browser, frames: List[int], heard: List[int], spoken: List[Any]
-) -> None:
+def test_bundles_run_in_chromium(bundle: Path, browser: Browser, wanted: List[Any]) -> None:
     """Catches a file that a bundler does not emit, and what a worker or an AudioWorklet lacks."""
-    found = results(browser, bundle / "page", bundle.name.rstrip("0123456789") not in LEAVE)
-    assert found.pop("element") > 3 and found.pop("hearing") == heard and found.pop("words") == spoken
-    assert found == {"page": frames, "worker": frames, "worklet": frames + spoken}
+    check_page(browser, bundle / "page", wanted, bundle.name.rstrip("0123456789") not in LEAVE)
 
 
-def test_bundles_run_on_servers(bundle: Path, frames: List[int], heard: List[int], spoken: List[Any]) -> None:
+def test_bundles_run_on_servers(bundle: Path, wanted: List[Any]) -> None:
     """ES modules and CommonJS, under the oldest node that is supported and a newer one."""
     scripts = sorted((bundle / "server").glob("*.[mc]js"))
     own = [path for path in scripts if path.stem in ("server", "required")]
     assert own or bundle.name.startswith("parcel")  # which the app asks for its page alone
     for version in (20, 22):
         for script in own:
-            assert printed(node(version), script) == [frames, heard, spoken], (version, script)
+            assert printed(node(version), script) == wanted, (version, script)
 
 
 def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
@@ -131,19 +120,16 @@ def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
     assert any("GRID audio-visual speech corpus" in text and "CC BY 4.0" in text for text in texts)
 
 
-def test_unbundled_in_node(app: Path, frames: List[int], heard: List[int], spoken: List[Any]) -> None:
+@pytest.mark.parametrize("version", [20, 22])
+@pytest.mark.parametrize("script", ["server.js", "server.cjs"])
+def test_unbundled_in_node(app: Path, wanted: List[Any], version: int, script: str) -> None:
     """``import`` and ``require()`` of the packages themselves."""
-    for version in (20, 22):
-        for script in ("server.js", "server.cjs"):
-            assert printed(node(version), app / script) == [frames, heard, spoken], (version, script)
+    assert printed(node(version), app / script) == wanted
 
 
-def test_unbundled_in_chromium(
-    app: Path, browser: Browser, frames: List[int], heard: List[int], spoken: List[Any], tmp_path: Path
-) -> None:
+def test_unbundled_in_chromium(app: Path, browser: Browser, wanted: List[Any], tmp_path: Path) -> None:
     """A page with an import map, workers and worklets that name the files."""
-    folder = tmp_path / "page"
-    shutil.copytree(app, folder)
+    folder = shutil.copytree(app, tmp_path / "page")
     html = folder / "index.html"
     paths = {"labial": "./node_modules/labial/index.js", "labial/": "./node_modules/labial/",
              "labial-laughter": "./node_modules/labial-laughter/index.js",
@@ -157,9 +143,7 @@ def test_unbundled_in_chromium(
             for name in ("labial", "labial-laughter", "labial-words"):
                 text = text.replace(f'"{name}"', f'"{paths[name]}"')
             path.write_text(text)
-    found = results(browser, folder, True)
-    assert found.pop("element") > 3 and found.pop("hearing") == heard and found.pop("words") == spoken
-    assert found == {"page": frames, "worker": frames, "worklet": frames + spoken}
+    check_page(browser, folder, wanted, True)
 
 
 def test_a_page_that_only_speaks_is_small(app: Path) -> None:
@@ -168,13 +152,10 @@ def test_a_page_that_only_speaks_is_small(app: Path) -> None:
     names = ["index.js"]
     for name in names:
         text = (folder / name).read_text(encoding="utf-8")
-        names += [found for found in _imports(text) if found not in names]
+        names += [found for found in re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE)
+                  if found not in names]
     assert "speech.js" in names and "mouth.js" not in names
     assert sum(len(gzip.compress((folder / name).read_bytes(), 9)) for name in names) <= 70_000
-
-
-def _imports(text: str) -> List[str]:
-    return re.findall(r'^import .* from "\./(.*)";$', text, re.MULTILINE)
 
 
 # ---- Types, under TypeScript's `strict`: what they allow and refuse, and the code of the pages and the kiosk
@@ -197,10 +178,10 @@ declare module "@met4citizen/talkinghead";
 
 
 @pytest.fixture(scope="module")
-def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def project(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the packages installed and node's types."""
     folder = tmp_path_factory.mktemp("types") / "project"
-    install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
+    install(npm_package, folder)
     for name in ("@types", "@vue", "csstype", "react", "react-dom", "scheduler", "undici-types", "vue"):
         (folder / "node_modules" / name).symlink_to(tools() / "node_modules" / name)
     (folder / "package.json").write_text('{ "type": "module" }')
@@ -230,39 +211,35 @@ def test_types_allow_and_refuse(project: Path, module: str) -> None:
     assert compiled(project, names, module, **resolution) == ""
 
 
+#: Of each framework a file with an error that the compiler must find.
+WRONG = {
+    "react-wrong.tsx": 'import type {} from "labial/react";\n'
+                       "// @ts-expect-error a track is no text\n"
+                       'export const wrong = <labial-face track="hello" />;\n',
+    "vue-wrong.ts": 'import type { GlobalComponents } from "vue";\nimport type {} from "labial/vue";\n'
+                    'type Props = InstanceType<GlobalComponents["labial-face"]>["$props"];\n'
+                    "// @ts-expect-error a track is no text\n"
+                    'export const wrong: Props = { track: "hello" };\n',
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("framework", ["react", "vue"])
 def test_elements_of_frameworks(project: Path, framework: str) -> None:
     """The hooks of docs/frameworks.md, and elements in JSX and templates: catches a property that nothing types."""
-    blocks = {block.name: block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name}
+    blocks = {**{block.name: block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name}, **WRONG}
     files = [name for name in blocks if name.startswith(f"{framework}-")]
-    assert files
+    assert len(files) > 1
     for name in files:
         (project / name).write_text(blocks[name])
     options: Dict[str, object] = {"jsx": "react-jsx", "moduleResolution": "bundler", "types": []}
-    assert compiled(project, [*files, *_wrong(project, framework)], "esnext", **options) == ""
+    assert compiled(project, files, "esnext", **options) == ""
 
 
-def _wrong(project: Path, framework: str) -> List[str]:
-    """A file with an error that the compiler must find."""
-    if framework == "react":
-        (project / "react-wrong.tsx").write_text(
-            'import type {} from "labial/react";\n'
-            "// @ts-expect-error a track is no text\n"
-            'export const wrong = <labial-face track="hello" />;\n')  # fmt: skip
-        return ["react-wrong.tsx"]
-    (project / "vue-wrong.ts").write_text(
-        'import type { GlobalComponents } from "vue";\nimport type {} from "labial/vue";\n'
-        'type Props = InstanceType<GlobalComponents["labial-face"]>["$props"];\n'
-        "// @ts-expect-error a track is no text\n"
-        'export const wrong: Props = { track: "hello" };\n')  # fmt: skip
-    return ["vue-wrong.ts"]
-
-
-@pytest.mark.skipif(not CHROMIUM, reason=REASON)
 def test_react_takes_over_what_a_server_wrote(project: Path, browser: Browser) -> None:
     """The component of docs/frameworks.md: React complains of every attribute that an element adds to the server's."""
-    (project / "react-lips.tsx").write_text(next(
-        block.text for block in parse(SOURCE / "docs" / "frameworks.md") if block.name == "react-lips.tsx"))
+    for block in parse(SOURCE / "docs" / "frameworks.md"):
+        if block.name == "react-lips.tsx":
+            (project / block.name).write_text(block.text)
     speaker = '<Speaker sound="data:," segments={[{ start: 0, end: 1, label: "AA" }]} />'
     (project / "server.tsx").write_text('import { renderToString } from "react-dom/server";\n'
                                         'import { Speaker } from "./react-lips";\n'

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import configparser
+import functools
 import json
 import os
 import re
 import shutil
 import zipfile
 from pathlib import Path
-from typing import Callable, Dict, List, Optional
+from typing import Callable, Dict, List
 
 import numpy as np
 import pytest
@@ -104,19 +105,33 @@ def test_notice_is_current() -> None:
     assert (SOURCE / "NOTICE").read_text(encoding="utf-8") == notices(headers), "run packaging/pack.py notice"
 
 
+Packed = Callable[[str], Path]
+
+
+@pytest.fixture(scope="module")
+def packed(tmp_path_factory: pytest.TempPathFactory) -> Packed:
+    """The folder that pack.py lays out for a build system; for the Arduino IDE with its archive beside it."""
+
+    @functools.cache
+    def of(kind: str) -> Path:
+        folder = tmp_path_factory.mktemp(kind) / "Labial"
+        pack(kind, "-o", folder, *(["--zip"] if kind == "arduino" else []))
+        return folder
+
+    return of
+
+
+def files_of(folder: Path) -> Dict[str, bytes]:
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
 @pytest.mark.parametrize("kind", ["amalgamation", "arduino", "platformio", "esp-idf", "zephyr"])
-def test_packages_carry_every_attribution(tmp_path: Path, kind: str) -> None:
+def test_packages_carry_every_attribution(packed: Packed, kind: str) -> None:
     """The licences of the training data ask for their notices in whatever passes the models on."""
-    pack(kind, "-o", tmp_path / "packed", *(["--zip"] if kind == "arduino" else []))
-    names = {path.relative_to(tmp_path / "packed").as_posix(): path.read_text(encoding="utf-8", errors="replace")
-             for path in (tmp_path / "packed").rglob("*") if path.is_file()}
-    if kind == "arduino":  # what is passed on
-        with zipfile.ZipFile(tmp_path / "packed.zip") as archive:
-            names = {name[len("Labial/"):]: archive.read(name).decode("utf-8", "replace")
-                     for name in archive.namelist()}
-    carried = single_spaced(names["LICENSE"] + names.get("NOTICE", ""))
+    files = files_of(packed(kind))
+    carried = single_spaced((files["LICENSE"] + files.get("NOTICE", b"")).decode())
     assert "MIT License" in carried
-    assert {Path(name).stem for name in names if name.endswith(".h")} >= set(attributions())
+    assert {Path(name).stem for name in files if name.endswith(".h")} >= set(attributions())
     for name, text in attributions().items():
         assert text in carried, name
 
@@ -125,11 +140,10 @@ def test_packages_carry_every_attribution(tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.slow
-def test_amalgamation_is_clean_c_and_cxx(tmp_path: Path) -> None:
+def test_amalgamation_is_clean_c_and_cxx(packed: Packed, tmp_path: Path) -> None:
     """No warning in either language, though files share one scope; nothing else of Labial is needed, and every global
     name begins with labial_."""
-    folder = tmp_path / "two"
-    pack("amalgamation", "-o", folder)
+    folder = shutil.copytree(packed("amalgamation"), tmp_path / "two")
     files = {path.name for path in folder.iterdir()}
     assert {"labial.c", "labial.h", "LICENSE"} <= files
     for path in folder.glob("*.[ch]"):
@@ -142,10 +156,9 @@ def test_amalgamation_is_clean_c_and_cxx(tmp_path: Path) -> None:
     if CXX:
         run(CXX, "-std=c++11", "-O0", *warnings("c++"), "-x", "c++", *sources, "-o", "program", cwd=folder)
         assert run(folder / "program") == expected_frames()
-    for limits in (["-DLABIAL_PAPER=1"], ["-DLABIAL_LOCKS=1"], ["-DLABIAL_PAPER=1", "-DLABIAL_LOCKS=2"]):
+    for limits in (["-DLABIAL_PAPER=1"], ["-DLABIAL_PAPER=1", "-DLABIAL_LOCKS=2"], ["-DLABIAL_LOCKS=1"]):
         run(CC, "-std=c99", "-O0", *warnings("c"), *limits, "-c", "labial.c", cwd=folder)
     if shutil.which("nm"):
-        run(CC, "-std=c99", "-c", "labial.c", cwd=folder)
         names = re.findall(r" [A-TV-Z] (\w+)$", run("nm", "labial.o", cwd=folder), re.MULTILINE)
         assert len(names) > 10 and all(name.startswith("labial_") for name in names)
 
@@ -169,15 +182,15 @@ def test_amalgamation_takes_exported_models(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def arduino(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("arduino") / "Labial"
-    pack("arduino", "--zip", "-o", folder)
-    return folder
+def arduino(packed: Packed) -> Path:
+    return packed("arduino")
 
 
 @pytest.fixture(scope="module")
 def objects(arduino: Path, tmp_path_factory: pytest.TempPathFactory) -> List[Path]:
     """The packed library and what runs sketches on the host, compiled as C++."""
+    if not CXX:
+        pytest.skip("no C++ compiler")
     folder = tmp_path_factory.mktemp("objects")
     sources = [*sorted((arduino / "src").rglob("*.c")), STUB / "host.cpp"]
     run(CXX, *arduino_options(arduino), "-x", "c++", "-c", *sources, cwd=folder)
@@ -214,29 +227,29 @@ def test_arduino_layout(arduino: Path) -> None:
     rows = [line.split("\t") for line in (arduino / "keywords.txt").read_text(encoding="utf-8").splitlines()]
     assert {"labial_tick": "KEYWORD2", "labial_t": "KEYWORD1", "LABIAL_DONE": "LITERAL1"}.items() <= dict(rows).items()
     with zipfile.ZipFile(arduino.with_name("Labial.zip")) as archive:
-        packed = {name: archive.read(name) for name in archive.namelist()}
-    assert packed == {f"Labial/{path.relative_to(arduino).as_posix()}": path.read_bytes()
-                      for path in arduino.rglob("*") if path.is_file()}
+        zipped = {name: archive.read(name) for name in archive.namelist()}
+    assert zipped == {f"Labial/{name}": content for name, content in files_of(arduino).items()}
 
 
 Lines = Callable[..., List[str]]
 
 
-@pytest.fixture
-def lines_of(arduino: Path, objects: List[Path], tmp_path: Path) -> Lines:
+@pytest.fixture(scope="module")
+def lines_of(arduino: Path, objects: List[Path], tmp_path_factory: pytest.TempPathFactory) -> Lines:
     """What a sketch of the packed library does on the host: `lines_of(sketch, milliseconds, press, text="")`. `text`
     comes in over its serial line, its buttons are pressed at `press` milliseconds."""
 
-    def lines(sketch: str, *arguments: int, text: str = "") -> List[str]:
+    @functools.cache
+    def program(sketch: str) -> Path:
+        target = tmp_path_factory.mktemp(sketch) / sketch
         run(CXX, *arduino_options(arduino), "-x", "c++", *sketch_files(arduino, sketch), "-x", "none", *objects,
-            "-o", tmp_path / sketch)
-        return run(tmp_path / sketch, *arguments, text=text).splitlines()
+            "-o", target)
+        return target
 
-    return lines
+    return lambda sketch, *arguments, text="": run(program(sketch), *arguments, text=text).splitlines()
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_arduino_sketches_run(lines_of: Lines) -> None:
     """Library and sketches as C++ on the host: the plotter draws 50 frames a second, the servo follows the line."""
     lines = lines_of("PlotFace", 5000)
@@ -256,7 +269,6 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
     """A line that is longer than the stream's queue and the buffer of a board's serial line: every vowel opens the jaw,
     and so does that of the next line, all after the servo's soft start. What is beyond the sketch's own limit is left
@@ -271,7 +283,6 @@ def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_jaw_sketch_stops_at_a_word(lines_of: Lines) -> None:
     """In the midst of a vowel, with more behind it: the mouth closes at once, and the next line opens it again."""
     text = "AA 3000 M 100 AA 3000\n" + " " * 28800 + "stop\n" + " " * 17280 + "AA 200\n"  # after 2.5 s, and 1.5 s later
@@ -282,7 +293,6 @@ def test_jaw_sketch_stops_at_a_word(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) -> None:
     """The sketch that ``labial rig --calibrate`` writes: moves one servo at a time, within what servos take, and prints
     the lines of a description."""
@@ -321,7 +331,6 @@ def talk_frames() -> np.ndarray:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
     """At reset and when the button is pressed: the module's command, then the track's pulses, one every 20 ms, from the
     moment at which the sound is heard."""
@@ -340,7 +349,6 @@ def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
     """The library on an ESP32: servo after servo has its first pulse; then every frame is on the wire when its sound is
     heard, as the float64 rig has it, but for the jaw, whose speed is limited; at rest after that; and all of it again
@@ -373,7 +381,6 @@ def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not CXX, reason="no C++ compiler")
 def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
     """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the first period on; 0 where lips touch,
     at 72 units, and between there and 136 in proportion; and 0 after the end."""
@@ -391,32 +398,23 @@ def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
     assert (ratios[count + 20:250] == 0).all() and (ratios[250 + count + 20:] == 0).all()
 
 
-@pytest.mark.skipif(not shutil.which("avr-g++"), reason="no avr-g++: install gcc-avr and avr-libc")
-def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
-    """The sketch for the processor that it is for: the track stays in flash, and is all that is large."""
-    files = [STUB / "Arduino.h", STUB / "Servo.h", *(arduino / "extras" / "UnoJaw").iterdir()]
-    for path in files:
-        shutil.copyfile(path, tmp_path / path.name)
-    options = [item for item in arduino_options(arduino) if not item.startswith("-I")]
-    run("avr-g++", "-mmcu=atmega328p", *options, "-I.", "-x", "c++", "-c", "UnoJaw.ino", "-o", "sketch.o", cwd=tmp_path)
-    text, data, bss = map(int, run("avr-size", "sketch.o", cwd=tmp_path).splitlines()[1].split()[:3])
-    assert text < 1200 and data == 0 and bss < 40
-
-
 #: The core that the Arduino IDE has for its boards with an AVR, where Debian puts it.
 CORE = Path("/usr/share/arduino/hardware/arduino/avr")
 
 
 @pytest.mark.skipif(not shutil.which("avr-g++") or not CORE.is_dir(),
                     reason="no Arduino core: install gcc-avr, avr-libc and arduino-core-avr")
-def test_uno_sketch_compiles_with_arduinos_core(arduino: Path, tmp_path: Path) -> None:
-    """What the stub of the core allows and the core itself does not; Servo is not part of the core and stays a stub."""
+def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
+    """The sketch for the processor that it is for, with Arduino's own core, and the Servo of the stub, which is no part
+    of the core: the track stays in flash, and is all that is large."""
     shutil.copyfile(STUB / "Servo.h", tmp_path / "Servo.h")
     sketch = arduino / "extras" / "UnoJaw"
     run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO",
         "-DARDUINO_ARCH_AVR", "-std=gnu++11", "-Os", "-Wall", "-Wextra", "-Werror", f"-I{CORE / 'cores' / 'arduino'}",
         f"-I{CORE / 'variants' / 'standard'}", f"-I{tmp_path}", "-include", "Arduino.h", "-x", "c++", "-c",
         sketch / "UnoJaw.ino", "-o", tmp_path / "sketch.o")
+    text, data, bss = map(int, run("avr-size", tmp_path / "sketch.o").splitlines()[1].split()[:3])
+    assert text < 1200 and data == 0 and bss < 40
 
 
 @pytest.mark.slow
@@ -435,39 +433,22 @@ def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
 # ---- PlatformIO, ESP-IDF, Zephyr: the tree as they see it ----------------------------------------------------------
 
 
-@pytest.fixture(scope="module", params=["source", pytest.param("packed", marks=pytest.mark.slow)])
-def tree(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> object:
-    """The source tree itself, and the parts of it that pack.py lays out."""
-
-    def of(kind: str) -> Path:
-        if request.param == "source":
-            return SOURCE
-        folder = tmp_path_factory.mktemp(kind) / "labial"
-        pack(kind, "-o", folder)
-        return folder
-
-    return of
-
-
 @pytest.mark.slow
-def test_platformio(tree: object, tmp_path: Path) -> None:
-    """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags."""
-    folder = tree("platformio")
+def test_platformio(packed: Packed, tmp_path: Path) -> None:
+    """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags. The
+    source tree has the same files there."""
+    folder = packed("platformio")
     described = json.loads((folder / "library.json").read_text(encoding="utf-8"))
     build = described["build"]
     sketches = [sketch for name in described["export"]["include"] for sketch in (SOURCE / name).glob("*.ino")]
     assert len(sketches) == 2 and not any('#include "' in sketch.read_text(encoding="utf-8") for sketch in sketches)
     (tmp_path / "main.c").write_text(PROGRAM)
     sources = sorted((folder / build["srcDir"]).rglob("*.c"))
+    assert files_of(folder / build["srcDir"]).items() <= files_of(SOURCE / build["srcDir"]).items()
+    assert len(sources) == len(list((SOURCE / build["srcDir"]).rglob("*.c")))
     run(CC, *build["flags"], "-I", build["includeDir"], *sources, tmp_path / "main.c", "-o", tmp_path / "program",
         cwd=folder)
     assert run(tmp_path / "program") == expected_frames()
-
-
-def unity_source() -> Optional[Path]:
-    """The folder of Unity that the build uses; None where it uses none that is a source."""
-    folder = os.environ.get("LABIAL_UNITY_SOURCE", "")
-    return Path(folder) if folder else None
 
 
 #: Stand-ins for the build functions of ESP-IDF and Zephyr: a static library with the given sources and folders.
@@ -496,12 +477,16 @@ endmacro()
 
 @pytest.mark.slow
 @pytest.mark.skipif(not CMAKE, reason="no cmake")
-@pytest.mark.parametrize(("kind", "functions", "below"), [("esp-idf", ESP_IDF, ""), ("zephyr", ZEPHYR, "zephyr")])
-def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: str, below: str) -> None:
-    """The component's CMakeLists.txt names files that exist and suffice; Zephyr takes the models asked for."""
+@pytest.mark.parametrize(("kind", "functions", "below"), [("esp-idf", ESP_IDF, ""), ("zephyr", ZEPHYR, "zephyr")],
+                         ids=["esp-idf", "zephyr"])
+def test_component_builds(packed: Packed, tmp_path: Path, kind: str, functions: str, below: str) -> None:
+    """The component's CMakeLists.txt names files that exist and suffice, and are those of the source tree; Zephyr takes
+    the models asked for."""
+    files = files_of(packed(kind))
+    assert {name for name in files if (SOURCE / name).read_bytes() != files[name]} <= {"NOTICE"}
     (tmp_path / "CMakeLists.txt").write_text(
         f"cmake_minimum_required(VERSION 3.20)\nproject(check C)\n{functions}"
-        f'add_subdirectory("{(tree(kind) / below).as_posix()}" component)\n'
+        f'add_subdirectory("{(packed(kind) / below).as_posix()}" component)\n'
         "add_executable(program main.c)\ntarget_link_libraries(program component)\n"
         "get_target_property(sources component SOURCES)\n"
         'file(WRITE "${CMAKE_BINARY_DIR}/sources" "${sources}")\n')
@@ -514,13 +499,12 @@ def test_component_builds(tree: object, tmp_path: Path, kind: str, functions: st
 
 @pytest.mark.slow
 @pytest.mark.skipif(not CMAKE, reason="no cmake")
+@pytest.mark.skipif("LABIAL_UNITY_SOURCE" not in os.environ, reason="no source of Unity: set LABIAL_UNITY_DIR")
 def test_device_tests_run_as_apps_of_frameworks(tmp_path: Path) -> None:
     """The test apps of ESP-IDF and PlatformIO name files that exist and suffice. As there, Unity has a unity_config.h
     behind the app's own folders, and opens its port when the tests begin. Catches a file of ours that is found in its
     place, and text before the port is open."""
-    unity = unity_source()
-    if unity is None:
-        pytest.skip("no source of Unity: set LABIAL_UNITY_DIR")
+    unity = Path(os.environ["LABIAL_UNITY_SOURCE"])
     (tmp_path / "port").mkdir()
     (tmp_path / "port" / "unity_config.h").write_text(
         "#include <stdio.h>\n#include <stdlib.h>\nextern int port_is_open;\n"
@@ -556,7 +540,7 @@ def test_device_tests_run_as_apps_of_frameworks(tmp_path: Path) -> None:
     assert run(tmp_path / "native").splitlines()[-1] == "OK"
 
 
-def test_component_of_esp_idf_has_what_it_builds_from(tmp_path: Path) -> None:
+def test_component_of_esp_idf_has_what_it_builds_from(packed: Packed) -> None:
     """The component manager takes all of the tree that idf_component.yml does not exclude: what pack.py lays out, and
     README.md. Catches a new file that would come along."""
     text = (SOURCE / "idf_component.yml").read_text(encoding="utf-8")
@@ -564,10 +548,7 @@ def test_component_of_esp_idf_has_what_it_builds_from(tmp_path: Path) -> None:
     own = ("build", ".git", ".pytest_cache", ".ruff_cache", ".venv", "CMakeUserPresets.json")  # in no clone
     left = {path.relative_to(SOURCE).as_posix() for entry in SOURCE.iterdir() if entry.name not in own
             for path in ([entry] if entry.is_file() else entry.rglob("*")) if path.is_file() and path not in excluded}
-    pack("esp-idf", "-o", tmp_path / "labial")
-    packed = {path.relative_to(tmp_path / "labial").as_posix() for path in (tmp_path / "labial").rglob("*")
-              if path.is_file()}
-    assert left == packed | {"README.md"}
+    assert left == {*files_of(packed("esp-idf")), "README.md"}
 
 
 def test_zephyr_module_offers_every_model() -> None:

@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import List
 
 import numpy as np
 import pytest
@@ -39,12 +40,13 @@ from labial.reference.published import (
     viterbi,
     whole_piece,
 )
-from labial.reference.tables import Equation, FloatTables
+from labial.reference.tables import Equation, ExportedTables, FloatTables
 from labial.reference.units import frame_counts
 from labial.rig.animation import FORMATS, with_shares
 from labial.see import motion
 from labial.tables.model import load, save
 from labial.tables.phones import read_stream
+from labial.tables.quantise import quantise
 from labial.train import codebook, pipeline, shapes
 from models import random_model, streams, write_episode
 from test_evaluate import law, planted
@@ -90,34 +92,30 @@ def test_the_whole_method_by_other_programs() -> None:
         np.testing.assert_allclose(whole, unit_by_other_means(tables, target, k), atol=1e-8)
 
 
-def test_nothing_in_is_nothing_out() -> None:
-    """A stream may end before it began."""
-    assert synthesise(FloatTables(random_model(1, "paper")), [(1, 9)]).shape == (0, 13)
-
-
-def test_units_run_from_boundary_to_boundary_inclusive() -> None:
-    """V-C-V: each vowel belongs to the unit that it ends and to the one that it begins; V-CC-V is one unit."""
-    assert pieces([4, 9, 5, 2, 6], [True, False, True, False, True]) == [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]
-    assert pieces([4, 3, 3, 5], [True, False, False, True]) == [Piece(0, 15, 0, 0)]
-    found = pieces([4, 3, 4, 3, 4], [True, False, True, False, True])
-    assert found == [Piece(0, 11, 0, 4), Piece(7, 18, 4, 0)]
-
-
-def test_short_units_can_be_taken_together() -> None:
-    """Where seams are measured: a piece ends with the first unit that gives it so many frames, if that fits."""
-    assert pieces([4, 3, 4, 3, 4, 3, 5, 20], [True, False] * 4, 16) == [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]
-    found = pieces([4, 3, 4, 35, 5], [True, False, True, False, True], 16)
-    assert found[0] == Piece(0, 11, 0, 4) and found[1].begin == 7
+@pytest.mark.parametrize(("counts", "boundary", "least", "expected"), [
+    # V-C-V: each vowel belongs to the unit that it ends and to the one that it begins; V-CC-V is one unit.
+    ([4, 9, 5, 2, 6], [1, 0, 1, 0, 1], 0, [Piece(0, 18, 0, 5), Piece(13, 26, 5, 0)]),
+    ([4, 3, 3, 5], [1, 0, 0, 1], 0, [Piece(0, 15, 0, 0)]),
+    ([4, 3, 4, 3, 4], [1, 0, 1, 0, 1], 0, [Piece(0, 11, 0, 4), Piece(7, 18, 4, 0)]),
+    # Where seams are measured, a piece ends with the first unit that gives it so many frames, if that fits.
+    ([4, 3, 4, 3, 4, 3, 5, 20], [1, 0] * 4, 16, [Piece(0, 18, 0, 4), Piece(14, 46, 4, 0)]),
+    ([4, 3, 4, 35, 5], [1, 0, 1, 0, 1], 16, [Piece(0, 11, 0, 4), Piece(7, 47, 4, 8), Piece(39, 51, 8, 0)]),
+    # A stream's first and last phoneme are boundaries; long units are cut and chained; no frames are no piece.
+    ([4, 3, 3], [0, 0, 0], 0, [Piece(0, 10, 0, 0)]),
+    ([100], [0], 0, [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]),
+    ([2, 30, 4, 5], [0, 1, 0, 1], 0, [Piece(0, 32, 0, OVERLAP), Piece(24, 41, OVERLAP, 0)]),
+    ([4, 0, 3, 0], [0, 1, 0, 1], 0, [Piece(0, 7, 0, 0)]),
+    ([0, 0], [1, 1], 0, []),
+])  # fmt: skip
+def test_units_run_from_boundary_to_boundary_inclusive(counts: List[int], boundary: List[int], least: int,
+                                                       expected: List[Piece]) -> None:
+    assert pieces(counts, list(map(bool, boundary)), *[least] * bool(least)) == expected
 
 
 def test_edges() -> None:
-    """A stream's first and last phoneme are boundaries; long units are cut and chained; no frames are no piece."""
-    assert pieces([4, 3, 3], [False, False, False]) == [Piece(0, 10, 0, 0)]
-    assert pieces([100], [False]) == [Piece(0, 40, 0, 8), Piece(32, 72, 8, 8), Piece(64, 100, 8, 0)]
-    assert pieces([2, 30, 4, 5], [False, True, False, True])[0] == Piece(0, 32, 0, OVERLAP)
-    assert pieces([4, 0, 3, 0], [False, True, False, True]) == [Piece(0, 7, 0, 0)]
-    assert pieces([0, 0], [True, True]) == [] and whole_piece([0]) == []
-    assert whole_piece([3, 0, 4]) == [Piece(0, 7, 0, 0)]
+    """No frames are no piece; a stream may end before it began."""
+    assert whole_piece([0]) == [] and whole_piece([3, 0, 4]) == [Piece(0, 7, 0, 0)]
+    assert synthesise(FloatTables(random_model(1, "paper")), [(1, 9)]).shape == (0, 13)
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -137,16 +135,12 @@ def test_pieces_cover_every_frame_once_or_twice(seed: int) -> None:
         assert cover.size == 0 or (cover.min() >= 1 and cover.max() <= 2)
 
 
-def random_tables(rng: np.random.Generator, frames: int, channels: int, states: int):
-    transition = -np.log(rng.dirichlet(np.ones(states), (channels, states)))
-    return rng.exponential(2.0, (frames, channels, states)), transition, rng.exponential(1.0, (channels, states))
-
-
 def test_search_by_every_path_of_small_cases() -> None:
     """Catches transitions read [to, from], a forgotten start or last frame, channels that mix."""
     rng = np.random.default_rng(0)
     for frames, states in ((1, 3), (2, 4), (5, 3)):
-        emission, transition, initial = random_tables(rng, frames, 4, states)
+        transition = -np.log(rng.dirichlet(np.ones(states), (4, states)))
+        emission, initial = rng.exponential(2.0, (frames, 4, states)), rng.exponential(1.0, (4, states))
         transition[rng.random(transition.shape) < 0.3] = np.inf
         transition[:, np.arange(states), np.arange(states)] = 1.0
         path = viterbi(emission, transition, initial)
@@ -175,18 +169,20 @@ def test_ties_and_edges() -> None:
     assert looked_at(7, 3).tolist() == [1, 4, 6] and looked_at(4, 2).tolist() == [1, 3]
 
 
-def test_join_crosses_shared_frames_linearly() -> None:
-    """Frames of one unit are its own; shared ones go from the old to the new in even steps, as it is published."""
-    pieces = [Piece(0, 6, 0, 3), Piece(3, 9, 3, 0)]
-    joined = join(pieces, [np.zeros((6, 1)), np.full((6, 1), 4.0)])
-    assert joined[:, 0].tolist() == [0, 0, 0, 1, 2, 3, 4, 4, 4]
-
-
 # ---- The published method on a device --------------------------------------------------------------------------------
 
 
 HERE = Path(__file__).resolve().parent
-LAB = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 2.8 SIL\n"
+LAB = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 1.8 SIL\n"
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    save(random_model(1, "paper"), tmp_path / "paper.npz")
+    save(random_model(1), tmp_path / "labial.npz")
+    (tmp_path / "phones.lab").write_text(LAB)
+    return tmp_path
+
 
 needs_letter = pytest.mark.skipif(
     not os.environ.get("LABIAL_RUNTIME_PAPER"),
@@ -219,31 +215,16 @@ def test_every_frame_is_that_of_the_published_method(seed: int) -> None:
 
 
 @needs_letter
-def test_check_compares_with_the_published_method(tmp_path: Path) -> None:
+def test_check_compares_with_the_published_method(given: Path) -> None:
     """`labial check` tells what the library is built for; one that is built to the letter refuses other models."""
-    save(random_model(1, "paper"), tmp_path / "paper.npz")
-    save(random_model(1), tmp_path / "labial.npz")
-    (tmp_path / "phones.lab").write_text(LAB)
-    phones = str(tmp_path / "phones.lab")
-    done = run("-m", "labial", "check", str(tmp_path / "paper.npz"), phones, "--predecessors", "12")
-    assert done.returncode == 0, done.stderr
-    assert re.search(r"published method by [0-9.]+ FAP units RMS: it is that method", done.stdout)
-    done = run("-m", "labial", "check", str(tmp_path / "labial.npz"), phones, "--predecessors", "12")
-    assert done.returncode == 1 and "train it by --method paper" in done.stderr
+    paper, other = (run("-m", "labial", "check", str(given / f"{name}.npz"), str(given / "phones.lab"),
+                        "--predecessors", "12") for name in ("paper", "labial"))
+    assert paper.returncode == 0, paper.stderr
+    assert re.search(r"published method by [0-9.]+ FAP units RMS: it is that method", paper.stdout)
+    assert other.returncode == 1 and "train it by --method paper" in other.stderr
 
 
 # ---- Models of ``--method paper`` ------------------------------------------------------------------------------------
-
-
-ENDS_EARLY = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n1.3 1.8 SIL\n"
-
-
-@pytest.fixture
-def given(tmp_path: Path) -> Path:
-    save(random_model(1, "paper"), tmp_path / "paper.npz")
-    save(random_model(1), tmp_path / "labial.npz")
-    (tmp_path / "phones.lab").write_text(ENDS_EARLY)
-    return tmp_path
 
 
 def frames_of(given: Path, name: str, module) -> np.ndarray:
@@ -294,27 +275,19 @@ def test_page_plot_and_bake_have_the_published_motion(given: Path, wanted: np.nd
     np.testing.assert_array_equal(track, delivered(wanted))
 
 
-def test_check_says_what_the_device_does_differently(given: Path, capsys: pytest.CaptureFixture) -> None:
-    """One sentence, and no defect where the device differs by design."""
-    assert main(["check", str(given / "paper.npz"), str(given / "phones.lab"), "--predecessors", "12"]) == 0
-    captured = capsys.readouterr()
-    found = re.search(r"differs from the published method by ([0-9.]+) FAP units RMS, by design", captured.out)
-    assert found and float(found[1]) > 1 and captured.err == ""
-    assert "published method: rms" in captured.out and captured.out.count("by design") == 1
-    main(["check", str(given / "labial.npz"), str(given / "phones.lab"), "--predecessors", "12"])
-    assert "published" not in capsys.readouterr().out
-
-
-def test_the_figure_of_check_is_measured_from_the_published_method(given: Path, wanted, capsys) -> None:
-    """Held against the frames of the library's own reference on the exported tables, with the rounding of frames."""
-    from labial.reference.tables import ExportedTables
-    from labial.tables.quantise import quantise
-
+def test_check_says_what_the_device_does_differently(given: Path, wanted: np.ndarray,
+                                                     capsys: pytest.CaptureFixture) -> None:
+    """One sentence, and no defect where the device differs by design. Its figure is that of the library's own reference
+    on the exported tables, with the rounding of frames."""
     model = load(given / "paper.npz")
     device = steps.synthesise(ExportedTables(quantise(model, "m")), read_stream(given / "phones.lab", model))
     rms = float(np.sqrt(np.mean((device - wanted) ** 2)))
-    main(["check", str(given / "paper.npz"), str(given / "phones.lab")])
-    assert f"published method by {rms:.1f} FAP units" in capsys.readouterr().out
+    assert main(["check", str(given / "paper.npz"), str(given / "phones.lab")]) == 0
+    captured = capsys.readouterr()
+    assert f"differs from the published method by {rms:.1f} FAP units RMS, by design" in captured.out and rms > 1
+    assert "published method: rms" in captured.out and captured.out.count("by design") == 1 and captured.err == ""
+    main(["check", str(given / "labial.npz"), str(given / "phones.lab"), "--predecessors", "12"])
+    assert "published" not in capsys.readouterr().out
 
 
 @pytest.mark.slow

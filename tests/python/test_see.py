@@ -7,7 +7,7 @@ import json
 import re
 import struct
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Callable, Dict, List
 
 import numpy as np
 import pytest
@@ -20,13 +20,16 @@ from labial.files import limits
 from labial.files.faps import FAP_COLUMNS, FAP_NUMBERS
 from labial.files.frames import even
 from labial.rig.animation import face, outputs
-from labial.see.motion import read_bands, read_fap, read_motion, read_motions
+from labial.see.motion import read_bands, read_fap, read_motion
 from labial.see.page import page
 from labial.see.player import DATA_PLACE, MOUTH, MOUTH_PLACE, PLAYER
 from models import write_motion
 from npm import NPM, tools
 
 HEADER = ",".join(("time", *FAP_COLUMNS))
+#: A description of one weight.
+MINE = 'unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n'
+THREE = ["--three", "three"]
 LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"
 
 
@@ -60,8 +63,8 @@ def given(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def data_of(text: str) -> Dict[str, Any]:
-    found = re.findall(r'<script type="application/json" id="labial-data">(.*?)</script>', text, re.S)
+def data_of(text: str, name: str = "labial-data") -> Dict[str, Any]:
+    found = re.findall(rf'<script type="application/json" id="{name}">(.*?)</script>', text, re.S)
     assert len(found) == 1
     return json.loads(found[0])
 
@@ -180,9 +183,20 @@ def test_plot_says_how_far_lips_close(given: Path, capsys: pytest.CaptureFixture
      "large.wav: a page takes a sound of 24 MB at most, and this one has 24.1 MB; as MP3 or Ogg it is shorter"),
     (["page", "a.csv", "--audio", ".", "-o", "a.html"], ".: Is a directory"),
     (["page", "a.csv", "--audio", "none.wav", "-o", "a.html"], "none.wav"),
+    (["page", "a.csv", "-o", "a.html", "--head", "head.glb"], "`npm install three` brings it"),
+    (["page", "a.csv", "-o", "a.html", "--head", "head.glb", "--three", "."], "is not the npm package three"),
+    (["page", "a.csv", "-o", "a.html", "--head", "a.csv", *THREE], "is not a whole .glb"),
+    (["page", "a.csv", "-o", "a.html", "--head", "head.glb", "--rig", "rig.toml", *THREE],
+     "none of the rig's shapes, beak"),
+    (["page", "a.csv", "-o", "a.html", *THREE], "--rig, --point and --three go with --head"),
+    (["page", "a.csv", "-o", "a.html", "--point", "chin=1"], "--rig, --point and --three go with --head"),
+    (["page", "a.csv", "-o", "a.html", "--head", "head.glb", "--point", "ear=3", *THREE],
+     "no point is called 'ear'"),
 ])  # fmt: skip
-def test_errors_are_one_line(given: Path, capsys, monkeypatch, arguments: List[str], message: str) -> None:
+def test_errors_are_one_line(given: Path, avatar: Path, stand_in: Path, capsys, monkeypatch, arguments: List[str],
+                             message: str) -> None:
     monkeypatch.chdir(given)
+    Path("rig.toml").write_text(MINE.replace("jawOpen", "beak"))
     Path("empty.wav").touch()
     with open("large.wav", "wb") as large:
         large.write(wav())
@@ -251,22 +265,16 @@ def test_player_requests_nothing() -> None:
 
 def test_controls_have_names() -> None:
     """Drawing, button and scrubber have labels for those who do not see them."""
-    text = PLAYER.read_text(encoding="utf-8")
-    labels = re.findall(r'aria-label="([^"]*)"', text)
+    labels = re.findall(r'aria-label="([^"]*)"', PLAYER.read_text(encoding="utf-8"))
     assert "Play" in labels and "Speed" in labels and any(label.startswith("Position") for label in labels)
     assert re.search(r'<svg [^>]*aria-label="[^"]*mouth', MOUTH.read_text(encoding="utf-8"))
-
-
-def test_names_tell_files_apart(given: Path) -> None:
-    assert [motion.name for motion in read_motions([given / "a.csv"])] == ["a"]
-    names = [motion.name for motion in read_motions([given / "a.csv", given / "a.csv"])]
-    assert names == [str(given / "a.csv")] * 2
 
 
 # ---- ``labial page --head`` ------------------------------------------------------------------------------------------
 
 
 BROWSER = THREE_D
+in_a_browser = pytest.mark.skipif(not (NPM and CHROMIUM), reason=f"{REASON}; and npm")
 #: Frames of which the third is wide open.
 OPENING = (0, 200, 600, 200, 0)
 FAPS = np.zeros((5, 13))
@@ -303,17 +311,32 @@ def stand_in(tmp_path: Path) -> Path:
     return tmp_path / "three"
 
 
+Shown = Callable[..., Dict[str, Any]]
+
+
+@pytest.fixture
+def shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, opening: Path, stand_in: Path) -> Shown:
+    """What the page of a head has: `shown(content, *options)`. Commands run in the folder that mine.toml is in."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_text(MINE)
+
+    def shown(head: bytes, *options: str) -> Dict[str, Any]:
+        (tmp_path / "a.glb").write_bytes(head)
+        assert main(["page", "opens.csv", "--head", "a.glb", "--three", "three", "-o", "page.html", *options]) == 0
+        return data_of((tmp_path / "page.html").read_text(encoding="utf-8"), "data")
+
+    return shown
+
+
 @pytest.mark.parametrize("core", [True, False])
-def test_everything_is_in_the_page(tmp_path: Path, opening: Path, avatar: Path, stand_in: Path, core: bool) -> None:
+def test_everything_is_in_the_page(avatar: Path, stand_in: Path, shown: Shown, core: bool) -> None:
     """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside. Before
     0.172 three had no three.core.js."""
-    out = tmp_path / "page.html"
     if not core:
         (stand_in / "build" / "three.core.js").unlink()
         (stand_in / "build" / "three.module.js").write_text("export const core = 1;")
-    assert main(["page", str(opening), "--head", str(avatar), "--three", str(stand_in), "-o", str(out)]) == 0
-    text = out.read_text(encoding="utf-8")
-    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    data = shown(avatar.read_bytes())
+    text = Path("page.html").read_text(encoding="utf-8")
     assert base64.b64decode(data["head"]) == avatar.read_bytes()
     expected = outputs(face("arkit"), FAPS)
     weights = np.array(data["weights"])
@@ -330,105 +353,65 @@ def test_everything_is_in_the_page(tmp_path: Path, opening: Path, avatar: Path, 
 
 
 @pytest.mark.parametrize(("jaw", "told"), [(1.0, ""), (0.25, "its mouth opens 0."), (3.0, "its mouth opens 2.")])
-def test_heads_that_the_built_in_weights_do_not_suit_are_told(tmp_path: Path, opening: Path, stand_in: Path, jaw: float,
-                                                              told: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_heads_that_the_built_in_weights_do_not_suit_are_told(shown: Shown, jaw: float, told: str,
+                                                              capsys: pytest.CaptureFixture[str]) -> None:
     """A jaw that goes a quarter as far as the made head's, or three times; of a rig of one's own nothing is said."""
     vertices, triangles, shapes = made_head()
     for name in ("jawOpen", "mouthClose"):
         shapes[name] = jaw * shapes[name]
-    path, out = tmp_path / "odd.glb", str(tmp_path / "page.html")
-    path.write_bytes(glb(*document_of(vertices, triangles, shapes)))
-    command = ["page", str(opening), "--head", str(path), "--three", str(stand_in), "-o", out]
-    assert main(command) == 0
+    head = glb(*document_of(vertices, triangles, shapes))
+    shown(head)
     said = capsys.readouterr().err
-    assert told in said and (f"warning: {path}: with the built-in weights" in said) == bool(told), said
-    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
-    assert main([*command, "--rig", str(tmp_path / "mine.toml")]) == 0 and capsys.readouterr().err == ""
+    assert told in said and ("warning: a.glb: with the built-in weights" in said) == bool(told), said
+    shown(head, "--rig", "mine.toml")
+    assert capsys.readouterr().err == ""
 
 
-def test_expressions_of_vrm_move_their_shapes(tmp_path: Path, opening: Path, stand_in: Path) -> None:
+def test_expressions_of_vrm_move_their_shapes(shown: Shown) -> None:
     """three.js knows the mesh's shapes alone, not the expressions that are made of them."""
     vertices, triangles, shapes = made_head(mouth="vrm")
     document, binary = document_of(vertices, triangles, {f"M_{name}": 2.0 * move for name, move in shapes.items()})
     document["extensions"] = {"VRMC_vrm": {"expressions": {"preset": {
         name: {"morphTargetBinds": [{"node": 0, "index": place, "weight": 0.5}]}
         for place, name in enumerate(("aa", "ou", "ih"))}}}}
-    (tmp_path / "a.vrm").write_bytes(glb(document, binary))
-    out = tmp_path / "page.html"
-    head = ["--head", str(tmp_path / "a.vrm"), "--three", str(stand_in)]
-    assert main(["page", str(opening), *head, "-o", str(out)]) == 0
-    text = out.read_text(encoding="utf-8")
-    data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.DOTALL)[1])
+    data = shown(glb(document, binary))
     assert set(data["shapes"]) == {"M_A", "M_U", "M_I"} and data["facing"] == 1.0
     opened = np.array(data["weights"])[:, data["shapes"].index("M_A")]
     assert opened == pytest.approx(0.5 * outputs(face("vrm"), FAPS)["aa"], abs=0.001) and opened.max() > 0.2
 
 
-def test_points_that_are_not_found_are_named(tmp_path: Path, opening: Path, stand_in: Path,
-                                             capsys: pytest.CaptureFixture[str]) -> None:
+def test_points_that_are_not_found_are_named(shown: Shown, capsys: pytest.CaptureFixture[str]) -> None:
     """A jaw that tears no seam: what `labial fit` needs to be told, a page is told likewise."""
     vertices, triangles, shapes = made_head()
     down = np.clip((20.0 - vertices[:, 1]) / 60.0, 0.0, 1.0)
-    path, out = tmp_path / "a.glb", tmp_path / "page.html"
     shapes["jawOpen"] = -20.0 * down[:, None] * np.eye(3)[1]
-    path.write_bytes(glb(*document_of(vertices, triangles, shapes)))
-    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.jawOpen]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
-    command = ["page", str(opening), "--head", str(path), "--rig", str(tmp_path / "mine.toml"), "--three",
-               str(stand_in), "-o", str(out)]
-    assert main(command) == 1 and not out.exists()
+    Path("a.glb").write_bytes(head := glb(*document_of(vertices, triangles, shapes)))
+    assert main(["page", "opens.csv", "--head", "a.glb", "--rig", "mine.toml", "--three", "three", "-o", "p.html"]) == 1
+    assert not Path("p.html").exists()
     error = capsys.readouterr().err
     names = re.search(r"the seam of the lips was not found: name (.*) with --point", error)[1].split(", ")
     nearest = {point: int(np.argmin(np.linalg.norm(vertices[:, :2] - place, axis=1))) for point, place in TRUE.items()}
-    assert main(command + [item for name in names for item in ("--point", f"{name}={nearest[name]}")]) == 0
-    data = json.loads(re.search(r'id="data">(.*?)</script>', out.read_text(encoding="utf-8"), re.DOTALL)[1])
+    data = shown(head, "--rig", "mine.toml", *(item for name in names
+                                               for item in ("--point", f"{name}={nearest[name]}")))
     assert data["shapes"] == ["jawOpen"]
     assert np.mean(data["corners"], axis=0) == pytest.approx([0.0, 0.0, data["corners"][0][2]], abs=0.002)
 
 
-def test_shapes_whose_names_clash_are_told_apart(tmp_path: Path, opening: Path, stand_in: Path) -> None:
+def test_shapes_whose_names_clash_are_told_apart(shown: Shown) -> None:
     """A fitted rig numbers what a description cannot tell apart; a page moves the shape that is meant."""
     vertices, triangles, shapes = made_head()
-    path, out = tmp_path / "a.glb", tmp_path / "page.html"
     named = {"mouthOpen": shapes["jawOpen"], "Lip O": shapes["mouthPucker"], "lip_o": shapes["mouthClose"]}
-    path.write_bytes(glb(*document_of(vertices, triangles, named)))
-    (tmp_path / "mine.toml").write_text('unit = "weight"\n[output.Lip_O_2]\nfrom = "opening"\nneutral = 0\nfull = 1\n')
-    assert main(["page", str(opening), "--head", str(path), "--rig", str(tmp_path / "mine.toml"), "--three",
-                 str(stand_in), "-o", str(out)]) == 0
-    data = json.loads(re.search(r'id="data">(.*?)</script>', out.read_text(encoding="utf-8"), re.DOTALL)[1])
-    assert data["shapes"] == ["Lip O"]
-
-
-def test_errors_say_what_to_do(tmp_path: Path, opening: Path, avatar: Path, stand_in: Path,
-                               monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """One line each, and no page."""
-    monkeypatch.chdir(tmp_path)
-    out = str(tmp_path / "page.html")
-    (tmp_path / "rig.toml").write_text('unit = "weight"\n[output.beak]\nfrom = "jaw"\nneutral = 0\nfull = 1\n')
-    three = ["--three", str(stand_in)]
-    for options, message in (
-        (["--head", str(avatar)], "`npm install three` brings it"),
-        (["--head", str(avatar), "--three", str(tmp_path)], "is not the npm package three"),
-        (["--head", str(opening), *three], "is not a whole .glb"),
-        (["--head", str(avatar), "--rig", str(tmp_path / "rig.toml"), *three], "none of the rig's shapes, beak"),
-        (three, "--rig, --point and --three go with --head"),
-        (["--point", "chin=1"], "--rig, --point and --three go with --head"),
-        (["--head", str(avatar), "--point", "ear=3", *three], "no point is called 'ear'"),
-    ):
-        assert main(["page", str(opening), "-o", out, *options]) == 1
-        error = capsys.readouterr().err
-        assert message in error and error.count("\n") == 1, error
-    assert not Path(out).exists()
+    Path("mine.toml").write_text(MINE.replace("jawOpen", "Lip_O_2"))
+    assert shown(glb(*document_of(vertices, triangles, named)), "--rig", "mine.toml")["shapes"] == ["Lip O"]
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
-@pytest.mark.skipif(not CHROMIUM, reason=REASON)
-def test_the_head_moves_in_a_browser(tmp_path: Path, opening: Path, avatar: Path, browser: Browser) -> None:
+@in_a_browser
+def test_the_head_moves_in_a_browser(avatar: Path, shown: Shown, browser: Browser) -> None:
     """With the real three.js: no error, the camera looks at the mouth, weights reach the mesh, and what is drawn
     changes where the mouth opens and is the same again where it closes."""
-    out, three = tmp_path / "page.html", tools() / "node_modules" / "three"
-    assert main(["page", str(opening), "--head", str(avatar), "--three", str(three), "-o", str(out)]) == 0
-    page = browser.page(out.as_uri())
+    shown(avatar.read_bytes(), "--three", str(tools() / "node_modules" / "three"))
+    page = browser.page(Path("page.html").absolute().as_uri())
     page.wait_for("!!window.labialHead", 60)
     assert not page.errors()
     middle = page.evaluate("labialHead.middle.toArray()")
@@ -445,20 +428,15 @@ def test_the_head_moves_in_a_browser(tmp_path: Path, opening: Path, avatar: Path
     page.wait_for("document.querySelector('input').value === '4'", 20)
 
 
-
 @pytest.mark.slow
-@pytest.mark.skipif(not NPM, reason="needs npm: install the Debian package npm")
-@pytest.mark.skipif(not CHROMIUM, reason=REASON)
+@in_a_browser
 @pytest.mark.parametrize("sound", [wav(), wav()[:20] + b"\x63\0" + wav()[22:]], ids=["short", "unknown"])
-def test_the_head_moves_on_without_a_sound(tmp_path: Path, opening: Path, avatar: Path, browser: Browser,
-                                           sound: bytes) -> None:
+def test_the_head_moves_on_without_a_sound(avatar: Path, shown: Shown, browser: Browser, sound: bytes) -> None:
     """Behind the end of a sound that is shorter than the motion, and where the browser does not play it. On a phone the
     whole width of the head is seen, and a screen reader is told the time."""
-    out, three = tmp_path / "page.html", tools() / "node_modules" / "three"
-    (tmp_path / "a.wav").write_bytes(sound)
-    assert main(["page", str(opening), "--head", str(avatar), "--three", str(three), "--audio", str(tmp_path / "a.wav"),
-                 "-o", str(out)]) == 0
-    page = browser.page(out.as_uri())
+    Path("a.wav").write_bytes(sound)
+    shown(avatar.read_bytes(), "--three", str(tools() / "node_modules" / "three"), "--audio", "a.wav")
+    page = browser.page(Path("page.html").absolute().as_uri())
     page.command("Emulation.setDeviceMetricsOverride", {"width": 375, "height": 667, "deviceScaleFactor": 1,
                                                         "mobile": True})
     page.wait_for("window.labialHead && labialHead.camera.aspect < 1", 60)

@@ -14,14 +14,13 @@ import numpy as np
 import pytest
 
 import labial
-from browser import CHROMIUM, REASON, Browser, Page
+from browser import Browser, Page
 from labial.hearing import voices
-from npm import NODE, TOOLS_MISSING, answered, install, node, package, tools
+from npm import NODE, TOOLS_MISSING, answered, install, lay, node, tools
 from packages import SOURCE, needs_runtime, run
 from pages import parse
 
 EXAMPLE = SOURCE / "examples" / "speak-page"
-needs_chromium = pytest.mark.skipif(not CHROMIUM, reason=REASON)
 needs_tools = pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING)
 
 #: How fast the page is made to speak.
@@ -60,11 +59,13 @@ SEGMENTS = """[...document.querySelectorAll("#status span")].map(({ textContent:
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page's folder, as build.mjs writes it."""
+    if TOOLS_MISSING:
+        pytest.skip(TOOLS_MISSING)
     folder = tmp_path_factory.mktemp("speak") / "example"
     shutil.copytree(EXAMPLE, folder)
-    install(package(tmp_path_factory.mktemp("npm") / "build"), folder)
+    install(npm_package, folder)
     for name in ("@echogarden", "esbuild"):
         (folder / "node_modules" / name).symlink_to(tools() / "node_modules" / name)
     run(NODE, "build.mjs", cwd=folder)
@@ -82,8 +83,6 @@ def page(built: Path, browser: Browser) -> Iterator[Page]:
 
 
 @pytest.mark.slow
-@needs_chromium
-@needs_tools
 def test_the_page_has_what_it_must(built: Path) -> None:
     """Catches a file that the page would have to fetch, and the missing licence of the voice."""
     assert {path.name for path in built.iterdir()} == {"index.html", "page.js", "COPYING"}
@@ -92,8 +91,6 @@ def test_the_page_has_what_it_must(built: Path) -> None:
 
 
 @pytest.mark.slow
-@needs_chromium
-@needs_tools
 def test_six_languages_are_heard_and_seen(page: Page) -> None:
     """Catches a language without its data, a sound that nobody hears, lips beside it, and a stop that stays open."""
     languages = page.evaluate("[...document.getElementById('language').options].map(({ text }) => text)")
@@ -125,8 +122,6 @@ def test_six_languages_are_heard_and_seen(page: Page) -> None:
 
 
 @pytest.mark.slow
-@needs_chromium
-@needs_tools
 def test_the_face_is_seen_however_long_the_text_is(page: Page) -> None:
     """On a phone: neither the phonemes push it out, nor does the caption cover it."""
     page.command("Emulation.setDeviceMetricsOverride", {"width": 375, "height": 667, "deviceScaleFactor": 1,
@@ -140,9 +135,6 @@ def test_the_face_is_seen_however_long_the_text_is(page: Page) -> None:
 
 # ---- What labial/espeak ----------------------------------------------------------------------------------------------
 
-
-#: Frames in which the mouth comes to rest behind the last phoneme.
-REST = 12
 
 Rows = List[Tuple[float, float, str]]
 
@@ -178,15 +170,25 @@ def without_gaps(ends: List[Tuple[float, str]]) -> Rows:
     return found
 
 
-def joined(found: Rows) -> Rows:
-    """Adjacent silences as one."""
-    result: Rows = []
-    for start, end, label in found:
-        if result and not label and not result[-1][2]:
-            result[-1] = (result[-1][0], end, "")
-        else:
+def assert_alike(cases: List[Any], wanted: List[List[Tuple[float, str]]], folder: Path) -> List[Tuple[Rows, List[str]]]:
+    """Asserts that of each case the segments are those of `wanted`, ends of phonemes, but for how silences are cut;
+    returns the segments, and the labels among them that are no phonemes."""
+
+    def joined(rows: Rows) -> Rows:
+        result: Rows = []
+        for start, end, label in rows:
+            if result and not label and not result[-1][2]:
+                start = result.pop()[0]
             result.append((start, end, label))
-    return result
+        return result
+
+    found = [([(item["start"], item["end"], item["label"]) for item in segments], unknown)
+             for segments, unknown in answered(ESPEAK, cases, folder)]
+    for case, (segments, _), ends in zip(cases, found, wanted):
+        one, other = joined(segments), joined(without_gaps(ends))
+        assert [row[2] for row in one] == [row[2] for row in other], case[0]
+        assert [row[:2] for row in one] == pytest.approx([row[:2] for row in other]), case[0]
+    return found
 
 
 def test_drawn_events_of_espeak(tmp_path: Path) -> None:
@@ -203,12 +205,9 @@ def test_drawn_events_of_espeak(tmp_path: Path) -> None:
         pieces = [rng.choice([0, 20, 900, 8000]) for _ in range(moment // 15 + 2)]
         samples = np.repeat(np.array(pieces, "int16"), rate * 15 // 1000) * rng.choice([1, -1])
         given.append([events_of(events), [samples[:777].tolist(), samples[777:].tolist()], rate])
-        wanted.append(without_gaps(voices.phonemes(events, samples, rate)))
+        wanted.append(voices.phonemes(events, samples, rate))
     moved = 0
-    for (events, _, _), (found, _), one in zip(given, answered(ESPEAK, given, tmp_path), wanted):
-        segments = [(item["start"], item["end"], item["label"]) for item in found]
-        assert [item[2] for item in joined(segments)] == [item[2] for item in joined(one)], events
-        assert [item[:2] for item in joined(segments)] == pytest.approx([item[:2] for item in joined(one)]), events
+    for (events, _, _), (segments, _) in zip(given, assert_alike(given, wanted, tmp_path)):
         starts = {event["audio_position"] / 1000 for event in events}
         moved += sum(item[0] not in starts for item in segments)
     assert moved > 100
@@ -233,12 +232,9 @@ def test_espeak_in_six_languages(tmp_path: Path) -> None:
         speaker = voices.Speaker(voice)
         samples, rate, ends = speaker.say(text)
         given.append([events_of(speaker._events), [samples.tolist()], rate])
-        wanted.append(joined(without_gaps(ends)))
-    for voice, (found, unknown), one in zip(SENTENCES, answered(ESPEAK, given, tmp_path), wanted):
-        segments = joined([(item["start"], item["end"], item["label"]) for item in found])
+        wanted.append(ends)
+    for voice, (segments, unknown) in zip(SENTENCES, assert_alike(given, wanted, tmp_path)):
         assert unknown == [] and len(segments) > 20, voice
-        assert [item[2] for item in segments] == [item[2] for item in one], voice
-        assert [item[:2] for item in segments] == pytest.approx([item[:2] for item in one]), voice
 
 
 #: Of each voice and text, what the npm package of espeak-ng reports: events, samples and their rate.
@@ -265,25 +261,21 @@ def test_espeaks_npm_package_in_six_languages(tmp_path: Path) -> None:
     """No unknown label, the times that the exporter takes of the same events, and stops that begin in silence. Would
     catch events of another form, among them labels that fill all eight bytes."""
     texts = [*SENTENCES.items(), ("pt", "Não, mãe, põe o pão à mão, eles chegaram.")]
-    done = run(node(22), "--input-type=module", "-e", PACKAGED, json.dumps(texts), cwd=tools())
-    given = json.loads(done)
+    given = json.loads(run(node(22), "--input-type=module", "-e", PACKAGED, json.dumps(texts), cwd=tools()))
+    sounds = [np.concatenate([np.array(piece, "int16") for piece in pieces]) for _, pieces, _ in given]
+    reported = [[(event["audio_position"], event["id"].encode("utf-8")[:8].decode("utf-8", "ignore"))
+                 for event in events if event["type"] == "phoneme"] for events, _, _ in given]
+    wanted = [voices.phonemes(names, samples, rate) for names, samples, (_, _, rate) in zip(reported, sounds, given)]
     stops = 0
-    for (voice, _), events_and_sound, (found, unknown) in zip(texts, given, answered(ESPEAK, given, tmp_path)):
-        events, pieces, rate = events_and_sound
-        samples = np.concatenate([np.array(piece, "int16") for piece in pieces])
-        names = [(event["audio_position"], event["id"].encode("utf-8")[:8].decode("utf-8", "ignore"))
-                 for event in events if event["type"] == "phoneme"]
-        wanted = joined(without_gaps(voices.phonemes(names, samples, rate)))
-        segments = joined([(item["start"], item["end"], item["label"]) for item in found])
+    found = assert_alike(given, wanted, tmp_path)
+    for (voice, _), (_, _, rate), samples, names, (segments, unknown) in zip(texts, given, sounds, reported, found):
         assert unknown == [] and len(segments) > 15, voice
-        assert [item[2] for item in segments] == [item[2] for item in wanted], voice
-        assert [item[:2] for item in segments] == pytest.approx([item[:2] for item in wanted]), voice
         assert segments[-1][1] == pytest.approx(len(samples) / rate, abs=0.001)
         loud = np.abs(samples.astype("int32"))
         for start, end, label in segments:
-            reported = [position / 1000 for position, name in names if name == label and start < position / 1000 < end]
-            if label[:1] in ("p", "t", "k") and reported:  # the sound falls silent there, before the burst
-                assert loud[round(start * rate) : round(min(reported) * rate)].mean() < loud.max() / 50, (voice, start)
+            bursts = [position / 1000 for position, name in names if name == label and start < position / 1000 < end]
+            if label[:1] in ("p", "t", "k") and bursts:  # the sound falls silent there, before the burst
+                assert loud[round(start * rate) : round(min(bursts) * rate)].mean() < loud.max() / 50, (voice, start)
                 stops += 1
     assert stops > 30
 
@@ -306,14 +298,11 @@ process.stdout.write(JSON.stringify({ seconds: count / sampleRate, lips: track.d
 @pytest.mark.slow
 @needs_runtime
 @needs_tools
-def test_code_of_the_page(tmp_path: Path) -> None:
+def test_code_of_the_page(npm_package: Path, tmp_path: Path) -> None:
     """Would catch calls that espeak-ng's or n2words' package does not have. Numbers are said as they are written."""
-    built = package(tmp_path / "npm")
-    modules = tmp_path / "node_modules"
-    modules.mkdir()
-    for name, folder in (("labial", built), ("labial-words", built.with_name(f"{built.name}-words")),
-                         *((name, tools() / "node_modules" / name) for name in ("@echogarden", "n2words"))):
-        (modules / name).symlink_to(folder)
+    lay(npm_package, tmp_path, "labial", "labial-words")
+    for name in ("@echogarden", "n2words"):
+        (tmp_path / "node_modules" / name).symlink_to(tools() / "node_modules" / name)
     for block in parse(SOURCE / "docs" / "browser.md"):
         if block.name in ("espeak.js", "numbers.js"):
             (tmp_path / block.name).write_text(block.text, encoding="utf-8")
@@ -325,5 +314,5 @@ def test_code_of_the_page(tmp_path: Path) -> None:
         "1,234": "one thousand two hundred thirty-four",
     }  # fmt: skip
     found = json.loads(run(node(22), tmp_path / "page.js", json.dumps(list(written))))
-    assert 1.0 < found["seconds"] and abs(found["lips"] - REST / 50 - found["seconds"]) < 0.02
+    assert 1.0 < found["seconds"] and abs(found["lips"] - 12 / 50 - found["seconds"]) < 0.02  # 12 frames of rest
     assert found["said"] == [[text, labial.phonemes(text.replace("-", " "))] for text in written.values()]
