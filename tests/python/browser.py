@@ -160,7 +160,6 @@ class Page:
             time.sleep(0.02)
 
     def errors(self) -> List[str]:
-        """What the page threw or complained of."""
         found = []
         for event in self._browser.events:
             if event.get("sessionId") == self._session:
@@ -172,6 +171,5 @@ class Page:
         return found
 
     def click(self, x: float, y: float) -> None:
-        """A press and release of the mouse."""
         for kind in ("mousePressed", "mouseReleased"):
             self.command("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1})

@@ -31,7 +31,6 @@ REAL_TIME = ("test_adapters", "test_browser_hearing", "test_browser_voice", "tes
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Declares the marker."""
     config.addinivalue_line("markers", "slow: takes long; runs where LABIAL_REQUIRE_ALL is set, as in .ci/run")
 
 

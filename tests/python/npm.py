@@ -64,28 +64,23 @@ def answered(script: str, given: Any, folder: Optional[Path] = None) -> Any:
 
 
 def tools() -> Path:
-    """The folder whose node_modules has the tools; installed once, below LABIAL_BUNDLERS where that is set, whoever
-    else asks for it meanwhile."""
+    """The folder whose node_modules has the tools; installed once, below LABIAL_BUNDLERS where that is set."""
     import fcntl  # which Windows lacks
 
     folder = Path(os.environ.get("LABIAL_BUNDLERS") or Path(tempfile.gettempdir()) / "labial-bundlers")
     folder.parent.mkdir(parents=True, exist_ok=True)
     with open(f"{folder}.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        _install_tools(folder)
+        names = ("package.json", "package-lock.json", "build.mjs")
+        stamp = folder / hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in names)).hexdigest()[:16]
+        if not stamp.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir(parents=True)
+            for name in names:
+                shutil.copyfile(FOLDER / name, folder / name)
+            run(NPM, "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)  # which checks the hashes
+            stamp.touch()
     return folder
-
-
-def _install_tools(folder: Path) -> None:
-    names = ("package.json", "package-lock.json", "build.mjs")
-    stamp = folder / hashlib.sha256(b"".join((FOLDER / name).read_bytes() for name in names)).hexdigest()[:16]
-    if not stamp.exists():
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        for name in names:
-            shutil.copyfile(FOLDER / name, folder / name)
-        run(NPM, "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)  # which checks the hashes
-        stamp.touch()
 
 
 def node(version: int) -> Path:

@@ -114,20 +114,14 @@ def pack(*arguments: object, root: Path = SOURCE, status: int = 0) -> str:
 @functools.cache
 def expected_frames() -> str:
     """What PROGRAM prints when it is compiled with the source tree's headers and library, without any package."""
-    with tempfile.TemporaryDirectory(prefix="labial-") as folder:
-        return _frames(Path(folder))
-
-
-def _frames(folder: Path) -> str:
-    (folder / "expected.c").write_text(PROGRAM)
-    run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c", *LIBRARIES,
-        "-o", folder / "expected")
-    frames = run(folder / "expected")
+    with tempfile.TemporaryDirectory(prefix="labial-") as name:
+        folder = Path(name)
+        (folder / "expected.c").write_text(PROGRAM)
+        run(CC, "-std=c99", f"-I{SOURCE / 'include'}", f"-I{SOURCE / 'lib' / 'models'}", folder / "expected.c",
+            *LIBRARIES, "-o", folder / "expected")
+        frames = run(folder / "expected")
     assert len(frames.splitlines()) == 20 + 12  # 400 ms, and the way to rest
     return frames
-
-
-# ---- Independent programs that results are held against --------------------------------------------------------------
 
 
 def sptk(tool: str) -> List[str]:

@@ -37,7 +37,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Set
+from typing import Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
@@ -132,16 +132,13 @@ def parse(page: Path) -> List[Block]:
 def _block(page: Path, label: str, line: int, lines: Sequence[str]) -> Block:
     if label not in LABELS:
         raise PageError(f'{page}:{line - 1}: a fence with the label "{label}"; known are {", ".join(LABELS)}')
-    block = Block(label, line, "\n".join(lines) + "\n")
     match = _NAME.match(lines[0]) if lines and label not in ("sh", *READ) else None
-    if match:
-        block.name = match[1]
-        if ".." in Path(match[1]).parts:
-            raise PageError(f"{page}:{line}: {match[1]} lies outside of the page's folder")
+    if match and ".." in Path(match[1]).parts:
+        raise PageError(f"{page}:{line}: {match[1]} lies outside of the page's folder")
     for offset, text in enumerate(lines):
         if label == "text" and _COMMAND.match(text):
             raise PageError(f"{page}:{line + offset}: a command in a text block, where nobody would run it")
-    return block
+    return Block(label, line, "\n".join(lines) + "\n", match and match[1])
 
 
 def headings(page: Path) -> Set[str]:
@@ -234,6 +231,12 @@ def end_session(session: int, grace: float) -> List[str]:
     return list(left.values())
 
 
+def write_program(path: Path, arguments: str) -> None:
+    """Writes a program that is this Python with arguments before its own."""
+    path.write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
+    path.chmod(0o755)
+
+
 class Runner:
     """Does what the blocks of one page say.
 
@@ -244,7 +247,7 @@ class Runner:
         not_run: commands, whole lines of ``sh`` blocks, that are passed over.
     """
 
-    def __init__(self, page: Path, folder: Path, given: Given, not_run: Sequence[str] = ()) -> None:
+    def __init__(self, page: Path, folder: Path, given: Given, not_run: Iterable[str] = ()) -> None:
         self._page = page
         self._folder = folder
         self._libraries = given.libraries
@@ -256,8 +259,7 @@ class Runner:
     def _environment(self, path: str) -> Mapping[str, str]:
         self._bin.mkdir()
         for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
-            (self._bin / name).write_text(f'#!/bin/sh\nexec "{sys.executable}"{arguments} "$@"\n')
-            (self._bin / name).chmod(0o755)
+            write_program(self._bin / name, arguments)
         return {**os.environ, "PATH": f"{self._bin}{os.pathsep}{path}", "LABIAL": str(SOURCE),
                 "PYTHONPATH": str(SOURCE / "export"), "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1",
                 "HOME": str(self._folder)}
@@ -283,16 +285,13 @@ class Runner:
             found |= tools_of_program(program, set())
         return found
 
-    def _require_tools(self) -> None:
+    def run(self) -> int:
+        """Runs every block; the number of commands, programs and files that were checked."""
         for tool, line in self.tools().items():
             place = find_tool(tool)
             if not place:
                 raise MissingTool(f"{self._page.name}:{line} needs {tool}: {TOOLS[tool]}")
             (self._bin / tool).symlink_to(place)
-
-    def run(self) -> int:
-        """Runs every block; the number of commands, programs and files that were checked."""
-        self._require_tools()
         blocks = self._blocks
         for i, block in enumerate(blocks):
             if block.name:
@@ -354,15 +353,14 @@ class Runner:
             path.unlink()
 
     def _c(self, block: Block, later: Sequence[Block]) -> None:
-        if block.name and block.name.endswith(".h"):
-            return  # compiled where it is included
-        self._compile(block, [CC, "-std=c99"], ".c")
+        if not (block.name or "").endswith(".h"):  # which is compiled where it is included
+            self._compile(block, [CC, "-std=c99"], ".c")
 
     def _cpp(self, block: Block, later: Sequence[Block]) -> None:
         if not CXX:
             raise MissingTool(f"{self._page.name}:{block.line} needs a C++ compiler: {TOOLS['g++']}")
         stub = SOURCE / "tests" / "packages" / "arduino_stub"
-        sketch = [f"-I{stub}", "-include", "Arduino.h"] if block.name and block.name.endswith(".ino") else []
+        sketch = [f"-I{stub}", "-include", "Arduino.h"] if (block.name or "").endswith(".ino") else []
         self._compile(block, [CXX, "-std=gnu++11", *sketch, "-x", "c++"], ".cpp")
 
     def _python(self, block: Block, later: Sequence[Block]) -> None:

@@ -25,7 +25,6 @@ from models import random_model, streams
 
 
 def main() -> None:
-    """Prints both motions."""
     assert method() == "paper"
     seed = int(sys.argv[1])
     model = random_model(seed, "paper", states=50 if seed % 2 else 12)

@@ -56,7 +56,6 @@ def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def opened(folder: Path, browser: Browser) -> Iterator[Any]:
-    """Opens one of the pages."""
     with served(folder) as site:
 
         def opened(name: str, before: str = "") -> Page:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from browser import Browser, Page, served
+from labial.files.frames import opening
 from labial.hearing import integer
 from labial.hearing.model import load
 from labial.hearing.quantise import quantise
@@ -42,8 +43,7 @@ const RECORDER = `registerProcessor("recorder", class extends AudioWorkletProces
 });`;
 const labial = window.labial = await Labial.load({ hearing: () => import("./node_modules/labial-hearing/index.js") });
 const data = await (await fetch("voice.wav")).arrayBuffer();
-window.host = { index: () => import("./node_modules/labial-hearing-host/index.js"),
-    ahead: () => import("./node_modules/labial-hearing-host/ahead.js") };
+window.ahead = () => import("./node_modules/labial-hearing-host/ahead.js");
 
 /** A source of sound in each form: what is heard, and what begins it. */
 const sources = {
@@ -108,7 +108,6 @@ window.ready = true;
 
 @pytest.fixture(scope="module")
 def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page, the voice and the packages."""
     folder = tmp_path_factory.mktemp("hearing") / "page"
     lay(npm_package, folder, "labial", "labial-hearing", "labial-hearing-host")
     (folder / "index.html").write_text(PAGE, encoding="utf-8")
@@ -118,17 +117,11 @@ def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def page(folder: Path, browser: Browser) -> Iterator[Page]:
-    """The page, ready to hear."""
     with served(folder) as address:
         page = browser.page(f"{address}/index.html")
         page.wait_for("window.ready")
         yield page
         assert page.errors() == []
-
-
-def opening(faps: np.ndarray) -> np.ndarray:
-    """(T,) distance of the lips beyond the neutral one, FAP units, of (T, 13) FAPs."""
-    return -(faps[:, 3] + faps[:, 4])
 
 
 def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
@@ -142,14 +135,12 @@ def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("kind", "rate", "model"), [
-    ("element", 0, "small"), ("stream", 0, "large"), ("stream", 44100, "small"), ("node", 96000, "small"),
-    ("remote", 0, "small"), ("element", 0, "host"), ("node", 0, "ahead"),
-])  # fmt: skip
+    ("element", 0, "small"), ("stream", 44100, "large"), ("node", 96000, "small"), ("remote", 0, "small"),
+    ("node", 0, "ahead"),
+])
 def test_lips_move_with_what_is_heard(page: Page, kind: str, rate: int, model: str) -> None:
-    """Catches lips that are late by what it takes to know them, a sound that is not delayed as much, blocks that are
-    lost, and a face that is drawn from another clock."""
-    wanted = {"host": "host.index", "ahead": "host.ahead"}.get(model, f"'{model}'")
-    page.evaluate(f"hear('{kind}', {rate}, {{ model: {wanted} }})")
+    """Catches lips or a sound that are late, blocks that are lost, and a face that is drawn from another clock."""
+    page.evaluate(f"hear('{kind}', {rate}, {{ model: {'ahead' if model == 'ahead' else repr(model)} }})")
     page.wait_for(f"heard.samples.length > {SECONDS} * heard.rate", 60)
     heard = page.evaluate("heard.over = true, heard")
     assert heard["delay"] >= heard["latency"]
@@ -175,8 +166,7 @@ def test_lips_move_with_what_is_heard(page: Page, kind: str, rate: int, model: s
 
 
 def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
-    """Catches a sound that runs on behind closed lips, a face that stays open, and an element that can be heard only
-    once."""
+    """Catches a sound behind closed lips, a face that stays open, and an element that is heard only once."""
     page.evaluate("hear('element', 0, {})")
     page.wait_for("heard.samples.length > heard.rate && Math.abs(face.faps[4]) > 100")
     refused = "(() => { try { hearing.push(new Int16Array(1)); } catch ({ code }) { return code; } })()"
@@ -248,23 +238,6 @@ def test_hearings_of_one_element_open_and_close_in_any_order(page: Page) -> None
     settled()
     page.evaluate("open().then(() => hearings[5].sound.disconnect()).then(() => hearings[5].close())")
     settled()
-
-
-def test_a_bundle_without_the_processors_file_has_its_text(page: Page) -> None:
-    """esbuild and rollup do not emit it; the page loads what stands in the package as text."""
-    page.evaluate("""(() => {
-        const add = AudioWorklet.prototype.addModule;
-        window.added = [];
-        AudioWorklet.prototype.addModule = function (address) {
-            added.push(String(address).split(":")[0]);
-            if (String(address).includes("labial-tap.js")) return Promise.reject(new Error("404"));
-            return add.call(this, address);
-        };
-    })()""")
-    page.evaluate("hear('node', 0, {})")
-    page.wait_for("Math.abs(face.faps[4]) > 100")
-    page.evaluate("hearing.close(), heard.over = true, 0")
-    assert page.evaluate("added") == ["http", "blob", "blob"]  # the last one is the recorder's
 
 
 def test_a_context_that_the_page_closed_is_not_taken_again(page: Page) -> None:

@@ -13,6 +13,7 @@ import pytest
 
 import labial
 from browser import Browser, Page, served
+from labial.files.frames import opening
 from messages import RATE, answers, elevenlabs
 from npm import TOOLS_MISSING, lay, node
 from packages import SOURCE, needs_runtime
@@ -93,7 +94,6 @@ Object.assign(window, { labial, ready: true });
 
 @pytest.fixture(scope="module")
 def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The code of docs/streams.md and the packages."""
     folder = tmp_path_factory.mktemp("voice") / "site"
     lay(npm_package, folder, "labial", "labial-words")
     for block in parse(SOURCE / "docs" / "streams.md"):
@@ -107,7 +107,6 @@ def folder(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def page(folder: Path, browser: Browser) -> Iterator[Page]:
-    """The page, ready."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
         page.wait_for("window.ready")
@@ -132,11 +131,6 @@ def test_client_in_node(folder: Path) -> None:
     assert found["number"] == len(frames) - 1 and len(frames) > len(whole) and found["latest"] < 0.3
     assert np.array_equal(frames[: len(whole) - 10], whole[: len(whole) - 10])
     assert np.abs(frames[-1]).max() < 60 and np.abs(frames).max() > 100
-
-
-def opening(faps: np.ndarray) -> np.ndarray:
-    """(T,) distance of the lips beyond the neutral one, FAP units, of (T, 13) FAPs."""
-    return -(faps[:, 3] + faps[:, 4])
 
 
 def test_client_in_a_page(page: Page) -> None:
@@ -165,7 +159,8 @@ def test_client_in_a_page(page: Page) -> None:
 
 
 def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
-    """The three files as they are; then a listener who interrupts: sound and lips end, and both begin again."""
+    """The three files as they are; then a listener who interrupts: sound and lips end, and both begin again, until the
+    face is told to be quiet."""
     with elevenlabs(0.05) as address:
         page.evaluate(f"talk({address!r}, 'Mama.')")
         page.wait_for("shown.length > 5 && Math.max(...shown) > 0.1 && shown.at(-1) === 0", 60)
@@ -175,35 +170,10 @@ def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
         page.wait_for("voice.done")
         assert page.evaluate("performance.now()") - begin < 2000
         page.wait_for("!face.faps.some(Boolean)")
-        page.evaluate("context.resume(), voice.begin(context.currentTime + 0.2), voice.say('Pa', 0, 0.5), 0")
+        page.evaluate("context.resume(), voice.begin(context.currentTime + 0.2), voice.say('Aah', 0, 60), 0")
         page.wait_for("Math.abs(face.faps[4]) > 100", 60)
-
-
-ANSWER = """(async () => {
-    const rested = face.cancel(200);
-    voice.begin(context.currentTime);
-    voice.say("Aah", 0, 60);
-    await rested;
-    return [face.voice === voice, voice.cancelled];
-})()"""
-
-
-def test_an_answer_that_begins_at_once_can_be_interrupted(page: Page) -> None:
-    """A face that is cancelled draws the next utterance of its voice, and the next cancel ends that too."""
-    page.evaluate("""(async () => {
-        const context = new AudioContext();
-        const voice = await labial.voice({ clock: context });
-        Object.assign(window, { context, voice });
-        face.voice = voice;
-        voice.begin(context.currentTime);
-        voice.say("Aah", 0, 60);
-    })()""")
-    for _ in range(2):
-        page.wait_for("Math.abs(face.faps[4]) > 100", 60)
-        assert page.evaluate(ANSWER) == [True, False]
-    page.wait_for("Math.abs(face.faps[4]) > 100", 60)
-    assert page.evaluate("face.cancel(200), voice.begin(context.currentTime), face.cancel(200), voice.cancelled")
-    page.wait_for("!face.faps.some(Boolean) && voice.done", 60)
+        assert page.evaluate("face.cancel(200).then(() => voice.cancelled)")
+        page.wait_for("!face.faps.some(Boolean) && voice.done", 60)
 
 
 def test_stand_in_is_what_readers_expect() -> None:

@@ -40,7 +40,6 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS_MISSING), reason=T
 
 @pytest.fixture(scope="module")
 def app(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The app, with the packages installed."""
     folder = tmp_path_factory.mktemp("app") / "app"
     shutil.copytree(FOLDER / "app", folder)
     (folder / "package.json").write_text('{ "type": "module" }')
@@ -75,8 +74,7 @@ def bundle(request: pytest.FixtureRequest, app: Path, tmp_path_factory: pytest.T
 
 
 def check_page(browser: Browser, folder: Path, wanted: List[Any], found: bool) -> None:
-    """Holds what the page of `folder` finds in each place to `wanted`; `found`: labial-hearing's AudioWorklet is a file
-    there."""
+    """Holds what the page finds in each place to `wanted`; `found`: labial-hearing's AudioWorklet is a file there."""
     with served(folder) as site:
         page = browser.page(f"{site}/index.html")
         page.wait_for("Object.keys(window.results ?? {}).length === 7")
@@ -189,7 +187,6 @@ def project(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 
 
 def compiled(project: Path, files: List[str], module: str = "nodenext", **options: object) -> str:
-    """What the compiler complains of."""
     settings: Dict[str, object] = {
         "strict": True, "noEmit": True, "target": "es2022", "module": module, "types": ["node"],
         "lib": ["es2023", "dom", "dom.iterable"], **options}  # fmt: skip

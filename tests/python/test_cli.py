@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -20,7 +21,7 @@ from labial.__main__ import main
 from labial.commands import COMMANDS
 from labial.errors import LabialError
 from labial.files.grammar import whole
-from labial.program import Parser, number, os_error, run
+from labial.program import Parser, number, run
 from labial.rig.animation import FORMATS
 from labial.tables.model import save
 from models import random_model, write_motion
@@ -110,15 +111,6 @@ def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixtur
     assert "flash, model" in text and "RAM, workspace" in text and "open_jaw" in text and "nats per" in text
 
 
-def test_check_compares_with_both_references(given: Path, capsys: pytest.CaptureFixture) -> None:
-    """The made-up model's paths flip at near ties, so the verdict is open; the comparison on the same tables is not."""
-    status = main(["check", str(given / "model.npz"), str(given / "phones.lab"), "--predecessors", "12"])
-    captured = capsys.readouterr()
-    assert "50 frames" in captured.out and "open_jaw" in captured.out
-    assert "same tables" not in captured.err
-    assert status == (1 if captured.err else 0)
-
-
 def test_options_of_one_method_are_not_silently_ignored(
     given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -158,17 +150,15 @@ def test_amplitude_widens_what_is_exported(given: Path, few_streams: None) -> No
 # ---- Programs with a command line ------------------------------------------------------------------------------------
 
 
-def parser() -> Parser:
-    found = Parser(prog="p")
-    found.add_argument("--share", type=number(0, 1))
-    found.add_argument("--count", type=partial(whole, 1, 9))
-    return found
+PARSER = Parser(prog="p")
+PARSER.add_argument("--share", type=number(0, 1))
+PARSER.add_argument("--count", type=partial(whole, 1, 9))
 
 
 @pytest.mark.parametrize("arguments", [["--share", "0"], ["--share", "1.0"], ["--count", "9"], ["--share", "1e-3"]])
 def test_numbers_within_their_limits(arguments: list) -> None:
     """Catches limits that do not belong to the range, and whole numbers that are none."""
-    found = parser().parse_args(arguments)
+    found = PARSER.parse_args(arguments)
     assert found.share == float(arguments[1]) if arguments[0] == "--share" else found.count == int(arguments[1])
     assert not isinstance(found.count, float)
 
@@ -184,7 +174,7 @@ def test_numbers_within_their_limits(arguments: list) -> None:
 def test_errors_in_arguments_are_one_line(arguments: list, message: str, capsys: pytest.CaptureFixture) -> None:
     """Catches a usage in front of the message."""
     with pytest.raises(SystemExit) as ended:
-        parser().parse_args(arguments)
+        PARSER.parse_args(arguments)
     assert ended.value.code == 2 and capsys.readouterr().err == f"p: {message}\n"
 
 
@@ -201,6 +191,8 @@ def raises(error: BaseException) -> Callable[[], int]:
     (raises(FileNotFoundError(errno.ENOENT, "any", "a.toml")), 1, "p: a.toml: No such file or directory\n"),
     (raises(OSError(errno.EADDRINUSE, "long words about it")), 1, "p: Address already in use\n"),
     (raises(OSError("in words")), 1, "p: in words\n"),
+    # Its number belongs to another list than the operating system's.
+    (raises(OSError(-2, "Name or service not known")), 1, "p: Name or service not known\n"),
 ])
 def test_a_program_ends_with_a_line_and_a_status(main: Callable[[], int], status: int, message: str,
                                                  capsys: pytest.CaptureFixture) -> None:
@@ -212,11 +204,6 @@ def test_other_errors_are_defects() -> None:
     """Catches a mistake in a program that is passed off as one of its user."""
     with pytest.raises(ZeroDivisionError):
         run("p", raises(ZeroDivisionError()))
-
-
-def test_errors_of_names_keep_their_words() -> None:
-    """Catches numbers that belong to another list than the operating system's."""
-    assert os_error(OSError(-2, "Name or service not known")) == "Name or service not known"
 
 
 def test_a_reader_that_goes_is_no_error() -> None:
@@ -326,40 +313,29 @@ def test_absurd_corpora(tmp_path: Path, told: Told, frames: Callable, lab: str, 
 
 
 @pytest.mark.parametrize("arguments", [
-    ["train", "c", "-o", "x.npz", "--seed", "-1"], ["train", "c", "-o", "x.npz", "--seed", "1_0"],
-    ["train", "c", "-o", "x.npz", "--seed", str(2**32)], ["train", "c", "-o", "x.npz", "--seed", "\u0661"],
-    ["train", "c", "-o", "x.npz", "--jobs", "9" * 30], ["train", "c", "-o", "x.npz", "--jobs", "0"],
-    ["train", "c", "-o", "x.npz", "--fps", "\u00b2"], ["train", "c", "-o", "x.npz", "--look-ahead", "-1"],
-    ["train", "c", "-o", "x.npz", "--look-ahead", "nan"], ["train", "c", "-o", "x.npz", "--talker-variance", "0"],
-    ["train", "c", "-o", "x.npz", "--talker-variance", "nan"], ["train", "c", "-o", "x.npz", "--adapt", "none.npz"],
-    ["train", "c", "-o", "x.npz", "--adapt", "m.npz"], ["evaluate", "c", "-o", "r", "--talker-variance", "-1"],
-    ["train", "", "-o", "x.npz"], ["train", "a.lab", "-o", "x.npz"],
-    ["laughter-corpus", "l", "--seed", "-1"], ["laughter-corpus", "a.lab"], ["laughter-corpus", ""],
-    ["evaluate", "c", "-o", "r", "--seed", "-1"], ["evaluate", "none", "-o", "r"],
-    ["evaluate", "c", "-o", "r", "--methods", ""], ["export", "m.npz", "--name", "", "-o", "o"],
-    ["export", "m.npz", "--name", "m", "-o", "o", "--amplitude", "nan"],
-    ["export", "m.npz", "--name", "m\n", "-o", "o"],
-    ["export", "m.npz", "--name", "m", "-o", "o", "--amplitude", "1e400"],
-    ["export", "m.npz", "--name", "m", "-o", "a.lab"], ["export", "m.npz", "--name", "m", "-o", "/dev/null"],
-    ["record", "talk.npz", "-o", "o", "--fps", "nan"], ["record", "talk.npz", "-o", "o", "--offset", "1e300"],
-    ["record", "talk.npz", "-o", "o", "--cutoff", "-1"], ["record", "talk.npz", "-o", "o", "--size", "1x1"],
-    ["record", "talk.npz", "-o", "a.lab"], ["record", "", "-o", "o"], ["record", "f.csv", "-o", "o"],
-    ["timings", ""], ["timings", "."], ["timings", "/dev/null"], ["timings", "/dev/zero"], ["timings", "none"],
-    ["timings", "a.lab", "-o", "."], ["timings", "a.lab", "-o", "none/x"], ["timings", "a\nb"],
-    ["timings", "\udcff.lab"],
-    ["synth", "m.npz", "", "-o", "x"], ["synth", ".", "a.lab"], ["synth", "m.npz", "a.lab", "-o", "."],
-    ["synth", "/dev/null", "a.lab"], ["synth", "/dev/zero", "a.lab"], ["synth", "none", "a.lab"],
-    ["page", "f.csv", "-o", "."], ["page", ".", "-o", "x.html"], ["page", "f.csv", "-o", "x", "--audio", "/dev/null"],
-    ["page", "f.csv", "-o", "x", "--audio", "."], ["plot", "f.csv", "-o", "x.png", "--channels", ","],
-    ["plot", "f.csv", "-o", "none/x.png"], ["plot", "f.csv", "-o", ""], ["rig", "/dev/null", "-o", "o"],
-    ["rig", ".", "-o", "o"], ["rig", "face.toml", "-o", "a.lab"], ["rig", "/dev/zero", "-o", "o", "--name", "x"],
-    ["bake", "f.csv", "-o", ".h"], ["bake", "", "-o", "x.h"], ["bake", ".", "-o", "x.h"], ["nothing"], ["bake"],
-    ["align", "a.lab"], ["align", "/dev/null"], ["align", "."], ["align", "", "--text", "a"],
-    ["align", "none.wav", "--text-file", "/dev/zero"],
-])  # fmt: skip
-def test_absurd_arguments(files: Path, told: Told, arguments: List[str]) -> None:
+    "train c -o x.npz --seed -1", "train c -o x.npz --seed 1_0", "train c -o x.npz --seed 4294967296",
+    "train c -o x.npz --seed '\u0661'", "train c -o x.npz --jobs 999999999999999999999999999999",
+    "train c -o x.npz --jobs 0", "train c -o x.npz --fps '\xb2'", "train c -o x.npz --look-ahead -1",
+    "train c -o x.npz --look-ahead nan", "train c -o x.npz --talker-variance 0",
+    "train c -o x.npz --talker-variance nan", "train c -o x.npz --adapt none.npz", "train c -o x.npz --adapt m.npz",
+    "evaluate c -o r --talker-variance -1", "train '' -o x.npz", "train a.lab -o x.npz", "laughter-corpus l --seed -1",
+    "laughter-corpus a.lab", "laughter-corpus ''", "evaluate c -o r --seed -1", "evaluate none -o r",
+    "evaluate c -o r --methods ''", "export m.npz --name '' -o o", "export m.npz --name m -o o --amplitude nan",
+    "export m.npz --name 'm\n' -o o", "export m.npz --name m -o o --amplitude 1e400", "export m.npz --name m -o a.lab",
+    "export m.npz --name m -o /dev/null", "record talk.npz -o o --fps nan", "record talk.npz -o o --offset 1e300",
+    "record talk.npz -o o --cutoff -1", "record talk.npz -o o --size 1x1", "record talk.npz -o a.lab",
+    "record '' -o o", "record f.csv -o o", "timings ''", "timings .", "timings /dev/null", "timings /dev/zero",
+    "timings none", "timings a.lab -o .", "timings a.lab -o none/x", "timings 'a\nb'", "timings '\udcff.lab'",
+    "synth m.npz '' -o x", "synth . a.lab", "synth m.npz a.lab -o .", "synth /dev/null a.lab", "synth /dev/zero a.lab",
+    "synth none a.lab", "page f.csv -o .", "page . -o x.html", "page f.csv -o x --audio /dev/null",
+    "page f.csv -o x --audio .", "plot f.csv -o x.png --channels ,", "plot f.csv -o none/x.png", "plot f.csv -o ''",
+    "rig /dev/null -o o", "rig . -o o", "rig face.toml -o a.lab", "rig /dev/zero -o o --name x", "bake f.csv -o .h",
+    "bake '' -o x.h", "bake . -o x.h", "nothing", "bake", "align a.lab", "align /dev/null", "align .",
+    "align '' --text a", "align none.wav --text-file /dev/zero",
+])
+def test_absurd_arguments(files: Path, told: Told, arguments: str) -> None:
     """Would catch an argument that no command foresees: whatever it is, it is refused in one line."""
-    line = told(*arguments)
+    line = told(*shlex.split(arguments))
     assert line.startswith("labial"), line
 
 

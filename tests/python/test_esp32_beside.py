@@ -51,8 +51,7 @@ def mouth(*options: str) -> bytes:
 
 @pytest.fixture()
 def board(request: pytest.FixtureRequest, tmp_path: Path) -> ctypes.CDLL:
-    """A mouth for a servo without a limit of speed, or with that of the parameter; each test has variables of its
-    own."""
+    """A mouth of each test's own, for a servo without a limit of speed, or with that of the parameter."""
     library = tmp_path / "mouth.so"
     library.write_bytes(mouth(*getattr(request, "param", ["-DMOUTH_CHANGE=500"])))
     loaded = ctypes.CDLL(str(library))
@@ -317,8 +316,6 @@ class Communicate:
 
 
 class Socket:
-    """A WebSocket that keeps what is sent."""
-
     def __init__(self) -> None:
         self.sent: List[Any] = []
 
@@ -388,8 +385,7 @@ def provider(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 @pytest.mark.parametrize("to_file", [False, True])
 def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_path: Path) -> None:
-    """Catches frames that lose their packet of sound: of two sentences, the first of which is interrupted, every packet
-    of lips comes before its sound and has the frames of its place."""
+    """Catches frames that lose their packet of sound, also behind a sentence that was interrupted."""
     voice = provider.TTSProvider({}, True)
     voice.edge_pitch = "+0Hz"
     conn = types.SimpleNamespace(websocket=Socket(), session_id="s")

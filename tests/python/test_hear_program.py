@@ -9,6 +9,7 @@ import random
 import struct
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import List, Tuple
 
@@ -27,9 +28,7 @@ pytestmark = needs_runtime
 PCM, FLOAT, EXTENSIBLE = 1, 3, 0xFFFE
 
 
-def hear(*arguments: str, data: bytes = b"") -> subprocess.CompletedProcess:
-    """Runs labial-hear; its output as bytes."""
-    return run("labial-hear", *arguments, data=data)
+hear = partial(run, "labial-hear")
 
 
 def chunk(name: bytes, data: bytes, size: int = -1) -> bytes:
@@ -38,19 +37,16 @@ def chunk(name: bytes, data: bytes, size: int = -1) -> bytes:
 
 
 def form(rate: int = 16000, channels: int = 1, bits: int = 16, encoding: int = PCM, more: bytes = b"") -> bytes:
-    """The chunk of the format."""
     size = channels * bits // 8
     return chunk(b"fmt ", struct.pack("<HHIIHH", encoding, channels, rate, rate * size, size, bits) + more)
 
 
 def riff(*chunks: bytes) -> bytes:
-    """A WAV file."""
     body = b"WAVE" + b"".join(chunks)
     return b"RIFF" + struct.pack("<I", len(body)) + body
 
 
 def pcm(samples: np.ndarray) -> bytes:
-    """Samples, low byte first."""
     return samples.astype("<i2").tobytes()
 
 
@@ -103,8 +99,7 @@ def test_a_file_is_heard_at_its_level(tmp_path: Path) -> None:
 
 
 def test_raw_samples_from_standard_input() -> None:
-    """Catches defaults other than 16 kHz and one channel, options that are passed over, and half a sample that counts
-    as a whole one."""
+    """Catches other defaults, options that are passed over, and half a sample that counts as a whole one."""
     stereo = np.stack([SOUND, SOUND[::-1]], axis=1)
     assert motion(hear("-", data=pcm(SOUND))) == wanted(SOUND)
     assert motion(hear("-", "--exact", data=pcm(SOUND))) == wanted(SOUND)[:35]
@@ -177,8 +172,7 @@ GUID = bytes.fromhex("000000001000800000aa00389b71")
     b"RIFF\0\0\0\0" + riff(form(), chunk(b"data", pcm(SOUND)))[8:],
 ], ids=["chunks", "behind", "extensible", "long-format", "endless", "largest", "half-a-sample", "no-size"])
 def test_unusual_files_are_heard(data: bytes, tmp_path: Path) -> None:
-    """Catches a reader that expects 44 bytes of header, or believes sizes that writers of pipes do not know; files may
-    come through a pipe, which cannot seek."""
+    """Catches a reader that expects 44 bytes of header, or believes sizes that writers of pipes do not know."""
     (tmp_path / "a.wav").write_bytes(data)
     assert motion(hear(str(tmp_path / "a.wav"))) == wanted(SOUND, file=True)
     assert motion(hear("-", data=data)) == wanted(SOUND)
@@ -216,8 +210,7 @@ CODES = np.frombuffer(SOUND.astype("<i2").tobytes()[: len(SOUND)], np.uint8)
 @pytest.mark.parametrize("channels", [1, 2])
 def test_encodings_are_heard(bits: int, encoding: int, data: np.ndarray, heard: np.ndarray, channels: int,
                              tmp_path: Path) -> None:
-    """Catches a wrong scale, sign or order of bytes; with two channels the second one is silent, so that half is
-    heard."""
+    """Catches a wrong scale, sign or order of bytes; of two channels the second is silent, so that half is heard."""
     content = np.ascontiguousarray(data)
     sound = heard.astype(np.int16)
     if channels == 2:
@@ -238,17 +231,13 @@ WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
 
 @pytest.mark.parametrize(("data", "told"), [
     (b"", "is not a WAV file"),
-    (b"RIFF", "is not a WAV file"),
     (b"RIFX" + WHOLE[4:], "is not a WAV file"),
     (b"RIFF\0\0\0\0AVI " + WHOLE[12:], "is not a WAV file"),
     (pcm(SOUND), "is not a WAV file"),
     (WHOLE[:12], "ends before its samples"),
-    (WHOLE[:19], "ends before its samples"),
     (WHOLE[:30], "ends within its format"),
     (WHOLE[:40], "ends before its samples"),
     (WHOLE[:44], "the sound is empty: it has no samples"),
-    (WHOLE[:45], "the sound is empty: it has no samples"),
-    (riff(form(), chunk(b"data", b"")), "the sound is empty: it has no samples"),
     (riff(form(), chunk(b"data", b""), chunk(b"LIST", b"INFO")), "the sound is empty: it has no samples"),
     (riff(form(), chunk(b"LIST", b"short", 0xFFFFFFFF), chunk(b"data", pcm(SOUND))), "a chunk is longer than the file"),
     (riff(chunk(b"fmt ", b"\1\0\1\0" + bytes(11)), chunk(b"data", b"")), "its format has less than 16 bytes"),
@@ -256,7 +245,6 @@ WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
      "a chunk is longer than the file"),
     (riff(chunk(b"data", pcm(SOUND)), form()), "has no format before its samples"),
     (riff(form(bits=12), chunk(b"data", b"")), "has samples of 12 bits in encoding 1, not PCM, floating point"),
-    (riff(form(bits=64), chunk(b"data", b"")), "has samples of 64 bits in encoding 1"),
     (riff(form(bits=16, encoding=FLOAT), chunk(b"data", b"")), "has samples of 16 bits in encoding 3"),
     (riff(form(bits=4, encoding=2), chunk(b"data", b"")), "has samples of 4 bits in encoding 2"),
     (riff(form(bits=32, encoding=FLOAT), chunk(b"data", struct.pack("<f", float("inf")))), "a sample is not finite"),
@@ -269,7 +257,6 @@ WHOLE = riff(form(), chunk(b"data", pcm(SOUND)))
     (riff(form(channels=6), chunk(b"data", b"")), "has 6 channels, not 1 or 2"),
     (riff(form(2**32 - 1, 0)[:10] + form(48000, 2)[10:20] + b"\2\0\x10\0", chunk(b"data", b"")), "contradicts itself"),
     (riff(form(11025), chunk(b"data", b"")), "11025 samples per second, channels: 1: sound of so many"),
-    (riff(form(0), chunk(b"data", b"")), "0 samples per second, channels: 1: sound of so many"),
 ])
 def test_hostile_files_are_refused(data: bytes, told: str, tmp_path: Path) -> None:
     """An error names the file and what is wrong with it, in one line, and the exit status is 1."""
@@ -299,10 +286,8 @@ def both(path: Path, capfd: pytest.CaptureFixture[str]) -> List[Tuple[int, str, 
     return found
 
 
-SIZES = [(0, 0), (0xFFFFFFFF, 0), (36, 0), (0xFFFFFFFF, 0xFFFFFFFF), (0, 0xFFFFFFFF)]
-
-
-@pytest.mark.parametrize(("size", "samples"), SIZES)
+@pytest.mark.parametrize(("size", "samples"), [(0, 0), (0xFFFFFFFF, 0), (36, 0), (0xFFFFFFFF, 0xFFFFFFFF),
+                                               (0, 0xFFFFFFFF)])
 def test_sizes_that_a_pipe_does_not_know(size: int, samples: int, tmp_path: Path,
                                          capfd: pytest.CaptureFixture[str]) -> None:
     """What programs write into a pipe, with 0 or the largest number where a size is not known: all sound is heard."""
@@ -315,6 +300,10 @@ def test_sizes_that_a_pipe_does_not_know(size: int, samples: int, tmp_path: Path
     assert [len(motion.splitlines()) for _, motion, _ in found] == [1 + 35 + 12] * 4
 
 
+def rows(motion: str) -> List[List[int]]:
+    return [[int(float(value)) for value in line.split(",")[1:]] for line in motion.splitlines()[1:]]
+
+
 def test_a_file_that_is_cut_off_is_heard_as_far_as_it_goes(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     """Catches an error in place of a warning, sound before the end that is lost, and half a sample that counts."""
     path = tmp_path / "cut.wav"
@@ -322,8 +311,7 @@ def test_a_file_that_is_cut_off_is_heard_as_far_as_it_goes(tmp_path: Path, capfd
     told = "the file is cut off: 0.70 of 1.40 s are there\n"
     for name, (status, motion, said) in zip([str(path), "standard input"] * 2, both(path, capfd)):
         assert (status, said) == (0, f"labial: warning: {name}: {told}")
-        rows = [[int(float(value)) for value in line.split(",")[1:]] for line in motion.splitlines()[1:]]
-        assert rows == wanted(SOUND, file=name == str(path))
+        assert rows(motion) == wanted(SOUND, file=name == str(path))
 
 
 def test_channels_that_cancel_each_other_are_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
@@ -340,14 +328,12 @@ def test_channels_that_cancel_each_other_are_told(tmp_path: Path, capfd: pytest.
         for name, (status, motion, said) in zip([str(path), "standard input"] * 2, both(path, capfd)):
             told = f"labial: warning: {name}: its two channels cancel each other, so the first one is heard alone\n"
             assert (status, said) == (0, told if cancel else "")
-            rows = [[int(float(value)) for value in line.split(",")[1:]] for line in motion.splitlines()[1:]]
-            assert rows == wanted(expected, file=name == str(path)) and np.abs(rows).max() > 100
+            assert rows(motion) == wanted(expected, file=name == str(path)) and np.abs(rows(motion)).max() > 100
 
 
 @pytest.mark.parametrize("name", [b"RF64", b"BW64"])
 def test_files_beyond_4_gb_are_refused(name: bytes, tmp_path: Path) -> None:
-    """Catches a header of 64-bit sizes that is heard as samples, from a file and from standard input; the name alone is
-    no header."""
+    """Catches a header of 64-bit sizes that is heard as samples; the name alone is no header."""
     sizes = chunk(b"ds64", struct.pack("<QQQI", 72 + 2 * len(SOUND), 2 * len(SOUND), len(SOUND), 0))
     data = name + b"\xff\xff\xff\xffWAVE" + sizes + form() + chunk(b"data", pcm(SOUND), 0xFFFFFFFF)
     path = tmp_path / "large.wav"
@@ -360,7 +346,7 @@ def test_files_beyond_4_gb_are_refused(name: bytes, tmp_path: Path) -> None:
     assert motion(hear("-", data=samples)) == wanted(np.frombuffer(samples, "<i2"))
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_any_bytes_are_survived(seed: int, tmp_path: Path) -> None:
     """Catches headers that end the program: bytes changed, and the end cut off."""
     draw, path = random.Random(seed), tmp_path / "any.wav"

@@ -10,8 +10,6 @@ import json
 import lzma
 import os
 import random
-import shutil
-import subprocess
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
@@ -30,7 +28,7 @@ from labial.hearing.model import load
 from labial.hearing.quantise import quantise
 from labial.rig import FACES, description_of
 from messages import SAMPLES
-from npm import MISSING, answered, package
+from npm import answered
 from packages import SOURCE, needs_runtime, run
 from test_hearing import voice
 
@@ -301,35 +299,26 @@ def test_malformed_timings(tmp_path: Path) -> None:
 # ---- Hearing in the npm package against the exporter's integers ------------------------------------------------------
 
 
-NODE = shutil.which("node")
-
-#: Reads a list of { sampleRate, channels, model, blocks }; of each the frames, the stretches and the latency.
-SCRIPT = r"""
-const [, url] = process.argv;
-const { Labial } = await import(url);
-let input = "";
-for await (const piece of process.stdin) input += piece;
+#: Of each { sampleRate, channels, model, blocks } the frames, the stretches and the latency.
+HEAR = r"""
 const file = (name) => () => import(url.replace(/\/index\.js$/, name));
-const labial = await Labial.load({ hearing: file("-hearing/index.js") });
+const hearing = await Labial.load({ hearing: file("-hearing/index.js") });
 const others = { host: file("-hearing-host/index.js"), ahead: file("-hearing-host/ahead.js") };
 const found = [];
-for (const { blocks, model, ...options } of JSON.parse(input)) {
-    const hearing = await labial.hear(null, { ...options, model: others[model] ?? model });
-    for (const block of blocks) hearing.push(Int16Array.from(block));
-    hearing.end();
-    const frames = Array.from(hearing, (faps) => [Array.from(faps), Array.from(hearing.visemes)]);
-    found.push([frames, hearing.segments(), hearing.latency]);
-    hearing.close();
+for (const { blocks, model, ...options } of given) {
+    const heard = await hearing.hear(null, { ...options, model: others[model] ?? model });
+    for (const block of blocks) heard.push(Int16Array.from(block));
+    heard.end();
+    const frames = Array.from(heard, (faps) => [Array.from(faps), Array.from(heard.visemes)]);
+    found.push([frames, heard.segments(), heard.latency]);
+    heard.close();
 }
-process.stdout.write(JSON.stringify(found));
+answer(found);
 """
 
 
-@pytest.mark.skipif(not NODE, reason="needs node: install the Debian package nodejs")
-@pytest.mark.skipif(bool(MISSING), reason=MISSING)
 def test_frames_are_the_exporters(tmp_path: Path) -> None:
-    """Catches another model in the package, a rate that is converted otherwise, and frames that are lost between
-    blocks."""
+    """Catches another model, a rate that is converted otherwise, and frames that are lost between blocks."""
     rng = np.random.default_rng(3)
     sounds, asked = [], []
     for number, rate in enumerate((8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000)):
@@ -341,24 +330,18 @@ def test_frames_are_the_exporters(tmp_path: Path) -> None:
         sounds.append((model, rate, sound))
         asked.append({"sampleRate": rate, "channels": sound.ndim, "model": model,
                       "blocks": [block.ravel().tolist() for block in np.split(sound, cuts)]})  # fmt: skip
-    url = (package(tmp_path / "npm") / "index.js").as_uri()
-    done = subprocess.run([str(NODE), "--input-type=module", "-e", SCRIPT, url], input=json.dumps(asked),
-                          capture_output=True, encoding="utf-8", check=False, timeout=120)  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
+    found = answered(HEAR, asked, tmp_path / "npm")
     assert len(found) == len(sounds)
     for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):
         trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
-        heard = integer.delivered(quantise(trained, f"hear_{model}"), sound, rate)
-        shares = integer.visemes(quantise(trained, f"hear_{model}"), sound, rate).tolist()
+        tables = quantise(trained, f"hear_{model}")
+        heard = integer.delivered(tables, sound, rate)
+        shares = integer.visemes(tables, sound, rate).tolist()
         assert frames == [list(pair) for pair in zip(heard.faps.tolist(), shares)], (model, rate)
-        rows = [
-            (trained.classes[shown], first / 50, (first + length) / 50)
-            for shown, first, length in hears.stretches(heard.scores)
-        ]
-        assert [row["label"] for row in segments] == [label for label, _, _ in rows]
-        assert [row["start"] for row in segments] == pytest.approx([start for _, start, _ in rows])
-        assert [row["end"] for row in segments] == pytest.approx([end for _, _, end in rows])
+        rows = hears.stretches(heard.scores)
+        assert [row["label"] for row in segments] == [trained.classes[shown] for shown, _, _ in rows]
+        assert [[row["start"], row["end"]] for row in segments] == pytest.approx(
+            np.array([[first, first + length] for _, first, length in rows]) / 50)
         assert latency == pytest.approx(0.28 if model == "ahead" else 0.12, abs=0.002)
 
 
@@ -382,9 +365,6 @@ def test_what_is_packed_is_an_xz_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("script", ["npm/speech.js", "npm-laughter/index.js", "npm-hearing/small.js",
                                     "npm-hearing-host/ahead.js", "npm-words/english.js"])
-def test_the_packages_are_what_xz_unpacks(tmp_path: Path, script: str) -> None:
-    if MISSING:
-        pytest.skip(MISSING)
-    path = package(tmp_path).parent / script
-    data = lzma.decompress(base64.b64decode(path.read_text().split('"')[-2]))
+def test_the_packages_are_what_xz_unpacks(npm_package: Path, script: str) -> None:
+    data = lzma.decompress(base64.b64decode((npm_package.parent / script).read_text().split('"')[-2]))
     assert data[:4] in (b"\0asm", b"LBM1")

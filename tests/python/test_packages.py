@@ -25,19 +25,7 @@ from labial.rig.table import convert, expected
 from labial.tables.model import load
 from labial.tables.phones import read_stream
 from labial.tables.quantise import quantise
-from packages import (
-    CC,
-    CMAKE,
-    CXX,
-    PROGRAM,
-    SOURCE,
-    attributions,
-    expected_frames,
-    pack,
-    run,
-    single_spaced,
-    warnings,
-)
+from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, attributions, expected_frames, pack, run, single_spaced, warnings
 from source import notices
 
 STUB = SOURCE / "tests" / "packages" / "arduino_stub"
@@ -141,8 +129,7 @@ def test_packages_carry_every_attribution(packed: Packed, kind: str) -> None:
 
 @pytest.mark.slow
 def test_amalgamation_is_clean_c_and_cxx(packed: Packed, tmp_path: Path) -> None:
-    """No warning in either language, though files share one scope; nothing else of Labial is needed, and every global
-    name begins with labial_."""
+    """No warning in either language, nothing else of Labial is needed, and every global name begins with labial_."""
     folder = shutil.copytree(packed("amalgamation"), tmp_path / "two")
     files = {path.name for path in folder.iterdir()}
     assert {"labial.c", "labial.h", "LICENSE"} <= files
@@ -294,8 +281,7 @@ def test_jaw_sketch_stops_at_a_word(lines_of: Lines) -> None:
 
 @pytest.mark.slow
 def test_calibration_sketch(arduino: Path, objects: List[Path], tmp_path: Path) -> None:
-    """The sketch that ``labial rig --calibrate`` writes: moves one servo at a time, within what servos take, and prints
-    the lines of a description."""
+    """``labial rig --calibrate``: one servo moves at a time, within what servos take; lines of a description."""
     (tmp_path / "face.toml").write_text('[output.jaw]\nfrom = "opening"\nclosed = 1400\nfull = 1900\n'
                                         '[output.lip]\nfrom = "upper_lip"\nneutral = 1500\nfull = 1700\n')
     assert main(["rig", str(tmp_path / "face.toml"), "--calibrate", "-o", str(tmp_path)]) == 0
@@ -323,8 +309,7 @@ HEARD = 3000 + 11 + 200
 
 
 def talk_frames() -> np.ndarray:
-    """(T, 13) FAPs of the sketches' sentence and the way to rest after it, by the float64 reference on the bundled
-    model's tables."""
+    """(T, 13) FAPs of the sketches' sentence and the way to rest after it, by the float64 reference."""
     model = load(SOURCE / "export" / "models" / "speech_en.npz")
     phonemes = read_stream(SOURCE / "examples" / "talk" / "talk.lab", model)
     return delivered(synthesise(ExportedTables(quantise(model, "bundled")), phonemes))
@@ -332,8 +317,7 @@ def talk_frames() -> np.ndarray:
 
 @pytest.mark.slow
 def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
-    """At reset and when the button is pressed: the module's command, then the track's pulses, one every 20 ms, from the
-    moment at which the sound is heard."""
+    """At reset and when the button is pressed: the module's command, then a pulse every 20 ms with the sound."""
     lines = lines_of("UnoJaw", 12000, 8000)
     assert [line for line in lines if line.startswith("serial")] == [f"serial 3000 {PLAY}", f"serial 8000 {PLAY}"]
     pulses = [tuple(map(int, line.split()[1:])) for line in lines if line.startswith("pulse")]
@@ -420,10 +404,10 @@ def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),
                     reason="no arm-none-eabi-g++: install gcc-arm-none-eabi and libstdc++-arm-none-eabi-newlib")
-def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
-    """Every file as C++ for a Cortex-M0+, at the level of warnings that the library holds itself to."""
-    sketches = [file for sketch in SKETCHES for file in sketch_files(arduino, sketch)]
-    files = [*sketches, *sorted((arduino / "src").rglob("*.c"))]
+def test_sketches_compile_for_arm(arduino: Path, tmp_path: Path) -> None:
+    """Where uint32_t is another type than on the host, at the level of warnings that the library holds itself to; the
+    library itself is compiled for ARM by the preset m0."""
+    files = [file for sketch in SKETCHES for file in sketch_files(arduino, sketch)]
     files.sort(key=lambda path: path.suffix != ".ino")  # g++ forgets -x behind a file whose suffix it knows
     run("arm-none-eabi-g++", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", *arduino_options(arduino), "-x",
         "c++", "-c", *files, cwd=tmp_path)
@@ -435,8 +419,7 @@ def test_arduino_tree_compiles_for_arm(arduino: Path, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_platformio(packed: Packed, tmp_path: Path) -> None:
-    """What library.json names builds, in the way in which PlatformIO reads it: all sources below srcDir, the flags. The
-    source tree has the same files there."""
+    """All sources below srcDir with the flags of library.json; the source tree has the same files there."""
     folder = packed("platformio")
     described = json.loads((folder / "library.json").read_text(encoding="utf-8"))
     build = described["build"]
@@ -480,8 +463,7 @@ endmacro()
 @pytest.mark.parametrize(("kind", "functions", "below"), [("esp-idf", ESP_IDF, ""), ("zephyr", ZEPHYR, "zephyr")],
                          ids=["esp-idf", "zephyr"])
 def test_component_builds(packed: Packed, tmp_path: Path, kind: str, functions: str, below: str) -> None:
-    """The component's CMakeLists.txt names files that exist and suffice, and are those of the source tree; Zephyr takes
-    the models asked for."""
+    """The component's CMakeLists.txt names files that suffice, and are those of the source tree."""
     files = files_of(packed(kind))
     assert {name for name in files if (SOURCE / name).read_bytes() != files[name]} <= {"NOTICE"}
     (tmp_path / "CMakeLists.txt").write_text(
@@ -541,8 +523,7 @@ def test_device_tests_run_as_apps_of_frameworks(tmp_path: Path) -> None:
 
 
 def test_component_of_esp_idf_has_what_it_builds_from(packed: Packed) -> None:
-    """The component manager takes all of the tree that idf_component.yml does not exclude: what pack.py lays out, and
-    README.md. Catches a new file that would come along."""
+    """What idf_component.yml does not exclude is what pack.py lays out, and README.md: catches a new file."""
     text = (SOURCE / "idf_component.yml").read_text(encoding="utf-8")
     excluded = {path for name in re.findall(r"^    - (\S+)$", text, re.MULTILINE) for path in SOURCE.glob(name)}
     own = ("build", ".git", ".pytest_cache", ".ruff_cache", ".venv", "CMakeUserPresets.json")  # in no clone

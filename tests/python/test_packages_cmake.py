@@ -45,8 +45,7 @@ def build(folder: Path, lists: str, *options: str) -> str:
 
 @pytest.mark.slow
 def test_find_package(installed: Path, tmp_path: Path) -> None:
-    """The target brings headers, the library below the model and the limit that the library was built with; the models'
-    attributions, in NOTICE, are installed."""
+    """The target brings headers, the library below the model and its limit; the attributions are installed."""
     find = f"find_package(labial {labial.__version__} REQUIRED COMPONENTS speech_en laughter_synthetic)\n"
     assert build(tmp_path, HEAD + find + LINK, f"-DCMAKE_PREFIX_PATH={installed}") == expected_frames()
     (tmp_path / "main.c").write_text('#include "speech_en.h"\nint main(void) { return LABIAL_QUEUE != 33; }\n')

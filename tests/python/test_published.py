@@ -28,18 +28,7 @@ from labial.evaluate.training import Training
 from labial.reference import published
 from labial.reference import stream as steps
 from labial.reference.fade import delivered
-from labial.reference.published import (
-    OVERLAP,
-    PIECE_MAX,
-    Piece,
-    join,
-    looked_at,
-    path_cost,
-    pieces,
-    synthesise,
-    viterbi,
-    whole_piece,
-)
+from labial.reference.published import OVERLAP, PIECE_MAX, Piece, join, pieces, synthesise, viterbi, whole_piece
 from labial.reference.tables import Equation, ExportedTables, FloatTables
 from labial.reference.units import frame_counts
 from labial.rig.animation import FORMATS, with_shares
@@ -159,14 +148,14 @@ def test_search_agrees_with_hmmlearn() -> None:
         transition, initial = -np.log(model.transmat_), -np.log(model.startprob_)
     path = viterbi(emission, transition, initial)
     np.testing.assert_array_equal(path, expected)
-    np.testing.assert_allclose(-path_cost(path, emission, transition, initial), likelihood)
+    np.testing.assert_allclose(-published.path_cost(path, emission, transition, initial), likelihood)
 
 
 def test_ties_and_edges() -> None:
     """Equal paths must not depend on the platform; the middle frame of a stride is looked at; no frames are no path."""
     assert not viterbi(np.zeros((6, 2, 3)), np.zeros((2, 3, 3)), np.zeros((2, 3))).any()
     assert viterbi(np.zeros((0, 2, 3)), np.zeros((2, 3, 3)), np.zeros((2, 3))).shape == (0, 2)
-    assert looked_at(7, 3).tolist() == [1, 4, 6] and looked_at(4, 2).tolist() == [1, 3]
+    assert published.looked_at(7, 3).tolist() == [1, 4, 6] and published.looked_at(4, 2).tolist() == [1, 3]
 
 
 # ---- The published method on a device --------------------------------------------------------------------------------
@@ -267,8 +256,7 @@ def test_whole_utterances_and_labials_models_are_as_they_were(given: Path) -> No
 
 
 def test_page_plot_and_bake_have_the_published_motion(given: Path, wanted: np.ndarray) -> None:
-    """What is looked at, and what a board plays back that does not compute, is the published method's too; on a board
-    it begins and ends at rest."""
+    """Also what a board plays back that does not compute; there it begins and ends at rest."""
     [read] = motion.read_motions([given / "paper.npz"], given / "phones.lab")
     np.testing.assert_array_equal(read.frames, wanted)
     track = read_track(Source(str(given / "phones.lab"), str(given / "paper.npz"))).frames
@@ -277,8 +265,7 @@ def test_page_plot_and_bake_have_the_published_motion(given: Path, wanted: np.nd
 
 def test_check_says_what_the_device_does_differently(given: Path, wanted: np.ndarray,
                                                      capsys: pytest.CaptureFixture) -> None:
-    """One sentence, and no defect where the device differs by design. Its figure is that of the library's own reference
-    on the exported tables, with the rounding of frames."""
+    """One sentence, whose figure is that of the library's own reference, and no defect of what differs by design."""
     model = load(given / "paper.npz")
     device = steps.synthesise(ExportedTables(quantise(model, "m")), read_stream(given / "phones.lab", model))
     rms = float(np.sqrt(np.mean((device - wanted) ** 2)))
@@ -286,8 +273,11 @@ def test_check_says_what_the_device_does_differently(given: Path, wanted: np.nda
     captured = capsys.readouterr()
     assert f"differs from the published method by {rms:.1f} FAP units RMS, by design" in captured.out and rms > 1
     assert "published method: rms" in captured.out and captured.out.count("by design") == 1 and captured.err == ""
-    main(["check", str(given / "labial.npz"), str(given / "phones.lab"), "--predecessors", "12"])
-    assert "published" not in capsys.readouterr().out
+    # The made-up model's paths flip at near ties, so its verdict is open; the comparison on the same tables is not.
+    status = main(["check", str(given / "labial.npz"), str(given / "phones.lab"), "--predecessors", "12"])
+    captured = capsys.readouterr()
+    assert "90 frames" in captured.out and "open_jaw" in captured.out and "published" not in captured.out
+    assert "same tables" not in captured.err and status == (1 if captured.err else 0)
 
 
 @pytest.mark.slow

@@ -30,8 +30,7 @@ def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("repository") / "labial"
     shutil.copytree(SOURCE, root, ignore=shutil.ignore_patterns("build", ".git", "__pycache__", "corpora", "docs"))
     log = root / "CHANGELOG.md"
-    log.write_text(re.sub(r"^(## [\d.]+).*unreleased.*$", r"\1, 2026", log.read_text(encoding="utf-8"), flags=re.M),
-                   encoding="utf-8")  # fmt: skip
+    log.write_text(re.sub(r"^(## [\d.]+).*unreleased.*$", r"\1, 2026", log.read_text("utf-8"), flags=re.M), "utf-8")
     git(root, "init", "-q")
     git(root, "add", "-A")
     git(root, "-c", "user.name=n", "-c", "user.email=e", "commit", "-qm", "all")
@@ -40,12 +39,10 @@ def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def git(root: Path, *arguments: str) -> None:
-    """Runs git in `root`."""
     subprocess.run(["git", *arguments], cwd=root, check=True, capture_output=True)
 
 
 def release(root: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """Runs the script of `root`."""
     return subprocess.run([sys.executable, root / "packaging" / "release.py", *map(str, arguments)],
                           capture_output=True, encoding="utf-8", check=False)
 
@@ -60,9 +57,8 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     name = f"labial-{version}"
     kinds = ("amalgamation", "arduino", "esp-idf", "platformio", "zephyr")
-    assert {path.name for path in out.iterdir()} == {
-        "SHA256SUMS", f"{name}.cdx.json", f"{name}-source.tar.gz",
-        *(f"{name}-{kind}.zip" for kind in kinds)}  # fmt: skip
+    assert {path.name for path in out.iterdir()} == {"SHA256SUMS", f"{name}.cdx.json", f"{name}-source.tar.gz",
+                                                     *(f"{name}-{kind}.zip" for kind in kinds)}
     for line in (out / "SHA256SUMS").read_text().splitlines():
         digest, package = line.split("  ")
         assert hashlib.sha256((out / package).read_bytes()).hexdigest() == digest
@@ -75,8 +71,8 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
 
 def check_bill(bill: Dict[str, Any], folder: Path) -> None:
     """It names every package with its sum, the data with its licence, and everything only once."""
-    assert (bill["bomFormat"], bill["specVersion"], bill["metadata"]["component"]["version"]) == (
-        "CycloneDX", "1.5", labial.__version__)  # fmt: skip
+    assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.5")
+    assert bill["metadata"]["component"]["version"] == labial.__version__
     components = {item["bom-ref"]: item for item in bill["components"]}
     assert len(components) == len(bill["components"])
     files = {name: item["hashes"] for name, item in components.items() if item["type"] == "file"}
@@ -172,9 +168,7 @@ def test_what_is_no_release_is_refused(repository: Path, tmp_path: Path) -> None
         done = release(repository, tag, "-o", tmp_path / tag, "--without", "python", "npm")
         assert done.returncode == 1 and reason in done.stderr and "Traceback" not in done.stderr
         assert done.stderr.count("\n") == 1
-    shutil.copyfile(SOURCE / "CHANGELOG.md", repository / "CHANGELOG.md")
-    log = repository / "CHANGELOG.md"
-    log.write_text(f"# Changes\n\n## {labial.__version__}, unreleased\n", encoding="utf-8")
+    (repository / "CHANGELOG.md").write_text(f"# Changes\n\n## {labial.__version__}, unreleased\n", encoding="utf-8")
     git(repository, "-c", "user.name=n", "-c", "user.email=e", "commit", "-qam", "unreleased")
     git(repository, "tag", "-f", f"v{labial.__version__}")
     done = release(repository, f"v{labial.__version__}", "-o", tmp_path / "unreleased")

@@ -10,7 +10,7 @@ import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, List, Tuple
+from typing import Any, List
 
 import numpy as np
 import pytest
@@ -26,19 +26,15 @@ from packages import SOURCE, needs_runtime, run
 pytestmark = needs_runtime
 
 
-def timings(text: str, *options: str, capsys: pytest.CaptureFixture[str]) -> List[Tuple[float, float, str]]:
-    assert main(["say", text, *options]) == 0
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
-    return [(float(start), float(end), label) for start, end, label in rows]
-
-
 def test_a_text_is_said_at_once(capsys: pytest.CaptureFixture[str]) -> None:
     """Every word in its order, signs as pauses, no gaps; as fast as people speak."""
-    found = timings("Hello there, how are you?", "--voice", "none", capsys=capsys)
-    assert [label for _, _, label in found] == "SIL HH EH L OW DH EH R SIL HH AW AA R Y UW SIL".split()
-    assert all(one[1] == other[0] for one, other in zip(found, found[1:])) and 1.0 < found[-1][1] < 3.0
+    assert main(["say", "Hello there, how are you?", "--voice", "none"]) == 0
+    said = capsys.readouterr().out
+    starts, ends, labels = zip(*(line.split() for line in said.splitlines()))
+    assert list(labels) == "SIL HH EH L OW DH EH R SIL HH AW AA R Y UW SIL".split()
+    assert ends[:-1] == starts[1:] and 1.0 < float(ends[-1]) < 3.0
     assert main(["say", "Hello", "there,", "how are", "you?", "--voice", "none"]) == 0  # without quotes
-    assert [line.split()[2] for line in capsys.readouterr().out.splitlines()] == [label for _, _, label in found]
+    assert capsys.readouterr().out == said
 
 
 @pytest.mark.parametrize("suffix", ["html", "csv", "fap", "jsonl", "lab"])
@@ -59,21 +55,20 @@ def test_outputs_by_their_names(suffix: str, tmp_path: Path) -> None:
         assert labial.read_timings(path)[1][0] == "M"
 
 
+WITHOUT_NUMPY = ("import sys; sys.modules['numpy'] = None\n"
+                 "from labial.__main__ import main; sys.exit(main(['say', *sys.argv[1:]]))")
+
+
 def test_it_needs_nothing_but_python(tmp_path: Path) -> None:
     """Right after `pip install`: without numpy, and without a synthesiser."""
-    code = ("import sys; sys.modules['numpy'] = None\n"
-            "from labial.__main__ import main; sys.exit(main(['say', 'Hello there', '-o', sys.argv[1]]))")
-    run(sys.executable, "-c", code, tmp_path / "a.html", env={"PATH": ""})
+    run(sys.executable, "-c", WITHOUT_NUMPY, "Hello there", "-o", tmp_path / "a.html", env={"PATH": ""})
     assert "labial-mouth" in (tmp_path / "a.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.skipif(not shutil.which("espeak-ng"), reason="espeak-ng is not installed")
 def test_another_language_needs_no_numpy(tmp_path: Path) -> None:
     """Right after `pip install`, with espeak-ng: it tells the phonemes, and its sound is left out."""
-    code = ("import sys; sys.modules['numpy'] = None\n"
-            "from labial.__main__ import main\n"
-            "sys.exit(main(['say', '--language', 'de', 'Guten Morgen', '-o', 'x.lab']))")
-    run(sys.executable, "-c", code, cwd=tmp_path)
+    run(sys.executable, "-c", WITHOUT_NUMPY, "--language", "de", "Guten Morgen", "-o", "x.lab", cwd=tmp_path)
     assert [label for label, _ in labial.read_timings(tmp_path / "x.lab")][1] == "G"
 
 
@@ -187,13 +182,8 @@ def test_what_is_longer_goes_on_alone() -> None:
     assert [frame[3] for frame in labial.with_sound(two, one)] == [-130, -200, -200]
     assert labial.with_sound([], []) == []
     assert labial.with_sound(np.array(one), np.array(one)) == labial.with_sound(one, one)
-
-
-def test_frames_are_mixed_as_their_faps() -> None:
-    """Catches frames of a stream or of hearing that only their FAPs could stand for."""
-    spoken, heard = [pose(400, 10), pose(60, 10)], [pose(200, 31), pose(200, 31)]
-    frames = [[labial.Frame(k, tuple(map(int, row))) for k, row in enumerate(rows)] for rows in (spoken, heard)]
-    assert labial.with_sound(*frames) == labial.with_sound(spoken, heard)
+    frame = labial.Frame(0, tuple(map(int, pose(400))))  # of a stream or of hearing
+    assert labial.with_sound([frame], [frame]) == labial.with_sound([pose(400)], [pose(400)])
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -283,7 +283,6 @@ FAPS[:, 0], FAPS[:, 4] = [x // 2 for x in OPENING], [-x for x in OPENING]
 
 @pytest.fixture
 def opening(tmp_path: Path) -> Path:
-    """A mouth that opens and closes."""
     return write_motion(tmp_path / "opens.csv", np.arange(5) / 50, FAPS)
 
 
@@ -408,8 +407,7 @@ def test_shapes_whose_names_clash_are_told_apart(shown: Shown) -> None:
 @pytest.mark.slow
 @in_a_browser
 def test_the_head_moves_in_a_browser(avatar: Path, shown: Shown, browser: Browser) -> None:
-    """With the real three.js: no error, the camera looks at the mouth, weights reach the mesh, and what is drawn
-    changes where the mouth opens and is the same again where it closes."""
+    """With the real three.js: the camera looks at the mouth, weights reach the mesh, and what is drawn changes."""
     shown(avatar.read_bytes(), "--three", str(tools() / "node_modules" / "three"))
     page = browser.page(Path("page.html").absolute().as_uri())
     page.wait_for("!!window.labialHead", 60)

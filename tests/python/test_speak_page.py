@@ -3,7 +3,6 @@ p, b, m, in every language of the page; what labial/espeak.js makes of espeak-ng
 
 from __future__ import annotations
 
-import ctypes.util
 import json
 import random
 import shutil
@@ -222,19 +221,6 @@ SENTENCES = {
     "it": "Il papà può cantare, ciao a tutti.",
     "pl": "Pan Tadeusz pije kawę, proszę czekać.",
 }
-
-
-@pytest.mark.skipif(not ctypes.util.find_library("espeak-ng"), reason="espeak-ng is not installed")
-def test_espeak_in_six_languages(tmp_path: Path) -> None:
-    """No unknown label, and the times that the exporter takes of the same events."""
-    given, wanted = [], []
-    for voice, text in SENTENCES.items():
-        speaker = voices.Speaker(voice)
-        samples, rate, ends = speaker.say(text)
-        given.append([events_of(speaker._events), [samples.tolist()], rate])
-        wanted.append(ends)
-    for voice, (segments, unknown) in zip(SENTENCES, assert_alike(given, wanted, tmp_path)):
-        assert unknown == [] and len(segments) > 20, voice
 
 
 #: Of each voice and text, what the npm package of espeak-ng reports: events, samples and their rate.

@@ -286,8 +286,6 @@ TOMLS: Dict[str, Tuple[str, str]] = {
     "many outputs": ("".join(FACE.replace("jaw]", f"j{n}]") for n in range(16_000)), "it has 16,000 outputs"),
     "many keys": (FACE + "".join(f"k{n} = 1\n" for n in range(80_000)), "unknown key"),
     "a day": ("unit = 1979-05-27T07:32:00Z\n" + FACE, "unit: "),
-    "not a number": (FACE.replace("1900", "nan"), "output.jaw.full: nan is not a finite number"),
-    "infinity": (FACE.replace("1900", "-inf"), "output.jaw.full: -inf is not a finite number"),
     "too large": (FACE + "#" * 1_000_000, "it has 1,000,053 bytes, more than the 1,000,000 that are read"),
 }  # fmt: skip
 
@@ -632,8 +630,7 @@ FUZZED = 2.0 if "LABIAL_REQUIRE_ALL" in os.environ else 0.6
 @pytest.mark.parametrize("name", ["a.glb", "a.gltf", "a.toml", "a.npz", "a.lab", "a.json", "a.TextGrid", "a.fap",
                                   "a.csv", "seen.npz", "seen.lab", "a.wav"])  # fmt: skip
 def test_fuzzed_files(tmp_path: Path, told: Told, stand_in: Path, name: str) -> None:  # noqa: F811
-    """Would catch a traceback, a hang, memory without bound or two lines, whatever bytes a file has; and a bit of an
-    archive that nobody misses."""
+    """Would catch a traceback, a hang, memory without bound, two lines; and a bit of an archive that nobody misses."""
     pytest.importorskip("scipy")
     signal.setitimer(signal.ITIMER_PROF, FUZZED + SECONDS)
     commands = _given(tmp_path)[name]
