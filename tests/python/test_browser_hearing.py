@@ -188,8 +188,7 @@ def test_a_cancel_silences_and_a_restart_goes_on(page: Page) -> None:
 
 
 def test_hearings_of_one_element_open_and_close_in_any_order(page: Page) -> None:
-    """Catches a hearing that the next one of the same element makes deaf, a close that throws, and a sound that the
-    loudspeaker gets twice or not at all."""
+    """Catches a hearing that the next makes deaf, a close that throws, and a sound that is doubled or lost."""
     page.evaluate("""(async () => {
         const context = window.context = new AudioContext(), out = new GainNode(context);
         out.connect(context.destination);

@@ -159,8 +159,7 @@ def test_client_in_a_page(page: Page) -> None:
 
 
 def test_page_of_the_manual_and_an_interruption(page: Page) -> None:
-    """The three files as they are; then a listener who interrupts: sound and lips end, and both begin again, until the
-    face is told to be quiet."""
+    """The three files as they are; then sound and lips are interrupted, begin again, and end with the face."""
     with elevenlabs(0.05) as address:
         page.evaluate(f"talk({address!r}, 'Mama.')")
         page.wait_for("shown.length > 5 && Math.max(...shown) > 0.1 && shown.at(-1) === 0", 60)

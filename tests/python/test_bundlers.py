@@ -110,8 +110,7 @@ def test_bundles_run_on_servers(bundle: Path, wanted: List[Any]) -> None:
 
 
 def test_bundles_name_the_source_of_the_data(bundle: Path) -> None:
-    """The licence of the speech model's data wants it named wherever the model goes. Parcel drops all comments: there
-    the page has to show labial.attribution (docs/browser.md)."""
+    """As its licence wants it. Parcel drops all comments: there the page shows labial.attribution."""
     if bundle.name.startswith("parcel"):
         return
     texts = [path.read_text(encoding="utf-8") for path in (bundle / "page").rglob("*") if path.is_file()]

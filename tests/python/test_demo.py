@@ -84,8 +84,7 @@ def opening(frame: List[int]) -> int:
 
 
 def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
-    """Every frame has the 13 channels within FAP limits, and the jaw and the lips move in all three parts. No frame is
-    lost or added where one model hands over to the other or both run side by side; then the mouth comes to rest."""
+    """None is lost or added where models hand over or run side by side, all are within limits; then rest."""
     total = flite_milliseconds("sentence.flite") + lab_milliseconds() + flite_milliseconds("laughing.flite")
     assert len(data["frames"]) == int(total * data["fps"] / 1000 + 0.5) + EASE
     assert any(data["frames"][-EASE - 1]) and not any(data["frames"][-1])
@@ -114,8 +113,7 @@ def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
 
 
 def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
-    """Before and after, the frames are those of plain speech; in between the corners rise with every word, and in the
-    pause the mouth laughs. Would catch streams out of step, and laughter that stays."""
+    """Before and after it is plain speech; in between corners rise with every word, and the pause laughs."""
     frames, speech, both = data["frames"], plain["frames"], parts(data)[1]
     assert len(frames) == len(speech)
     laughing = spans(data, "laughing", both)

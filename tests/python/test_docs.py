@@ -16,7 +16,7 @@ import pytest
 import pages
 from models import write_episode
 from packages import SOURCE, copy_sources
-from pages import LINK, Given, MissingTool, PageError, Runner, headings, parse
+from pages import LINK, Given, MissingTool, PageError, Runner, headings
 from test_evaluate import law, planted
 from test_record import seen
 from test_see import wav
@@ -345,19 +345,6 @@ def test_a_page_sees_only_tools_that_it_names(tmp_path: Path, given: Given) -> N
         check(tmp_path / "not_named", "```sh\nname=cma\n${name}ke --version\n```\n", given)
 
 
-def test_tools_of_programs_are_found(tmp_path: Path, given: Given, monkeypatch: pytest.MonkeyPatch) -> None:
-    """In what a block starts, and in what that imports; not in what a page passes over."""
-    page = tmp_path / "page.md"
-    page.write_text('```sh\npython3 "$LABIAL/a b/c.py"\nsh $LABIAL/d.sh\npio run flite\n```\n```js\n```\n')
-    monkeypatch.setattr(pages, "SOURCE", tmp_path)
-    (tmp_path / "d.sh").write_text("valgrind ./x\n")
-    assert set(Runner(page, tmp_path / "1", given).tools()) == {"valgrind", "node"}
-    page.write_text('```sh\npython3 "$LABIAL/c.py" --port 0\n```\n```python\nrun(["simavr"])  # not espeak-ng\n```\n')
-    (tmp_path / "c.py").write_text('import e\n\nrun("flite", "-v", "clang++")\n')
-    (tmp_path / "e.py").write_text("from c import run\n\nrun('qemu-system-arm')\n")
-    assert Runner(page, tmp_path / "2", given).tools() == {"flite": 2, "qemu-system-arm": 2, "simavr": 5}
-
-
 def has_ended(process: str) -> bool:
     """Whether a process has ended, within two seconds; who inherited it may not have noticed."""
     for _ in range(40):
@@ -382,11 +369,3 @@ def test_a_process_that_a_block_leaves_is_an_error(first: str, last: str, compla
     with pytest.raises(PageError, match=f"page.md:2: {complaint}"):
         check(tmp_path, f"```sh\n{first}\nsleep 0.1 &\nsleep 600 &\necho $! > left\n{last}```\n", given)
     assert has_ended((tmp_path / "page" / "left").read_text().strip())
-
-
-def test_names_of_blocks(tmp_path: Path) -> None:
-    """Only a comment that begins with a file's name names the block."""
-    page = tmp_path / "page.md"
-    page.write_text("```c\n/* a/b-c.c, and more */\n```\n```toml\n# no a.name\n```\n```sh\n# x.sh\n```\n"
-                    "```c\n/* Uses main.c. */\n```\n```cpp\n// Talk.ino: speaks\n```\n")
-    assert [block.name for block in parse(page)] == ["a/b-c.c", None, None, None, "Talk.ino"]

@@ -302,8 +302,7 @@ def test_nothing_moves_before_the_begin(lips: ctypes.CDLL) -> None:
 
 @pytest.mark.slow
 def test_threads(lips: ctypes.CDLL) -> None:
-    """Catches frames that are read while they are written: what is shown from another thread is always a frame that was
-    heard, or on the way from or to the neutral face."""
+    """Catches frames that are read while they are written: what another thread shows was heard, or eases."""
     samples, rate = voice(6.0), 16000
     known = {tuple(frame) for frame in heard(samples, rate)}
     assert lips.lips_begin(rate, 1) == 0
@@ -433,8 +432,7 @@ def hunks(patch: Path) -> Dict[str, List[str]]:
 
 
 def fill(context: str, parts: Dict[str, List[str]], *suffixes: str) -> str:
-    """Code in which each comment `hunk N of FILE` is replaced by that hunk as patched; all hunks of files with these
-    suffixes must be used, and no others."""
+    """Code in which each comment `hunk N of FILE` is that hunk; all of files with these suffixes must be used."""
     used = set()
 
     def patched(match: re.Match) -> str:

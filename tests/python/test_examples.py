@@ -159,8 +159,7 @@ class Bus:
 
 @needs_runtime
 def test_pca9685_gets_its_registers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As its data sheet has it: asleep for the prescaler, four registers for each channel from 6 on, off at the end.
-    One servo after the other begins, at rest."""
+    """As its data sheet has it: asleep for the prescaler, four registers a channel; one servo after another."""
     bus, face = Bus(), labial.Face(PI / "face.toml")
     monkeypatch.setattr("servos.time.sleep", lambda seconds: None)
     device = servos.PCA9685(face.rig, bus)
@@ -392,8 +391,7 @@ def test_jaw_opens_wide_and_closes() -> None:
 
 
 def test_servos_are_written_to_the_chip() -> None:
-    """Set-up in the order the chip needs; servo after servo, half a second each; then 20 bytes per frame, within each
-    servo's limits and its slew, and rest at the end."""
+    """Set-up; servo after servo, half a second each; 20 bytes a frame, within limits and slews; rest at the end."""
     rig = read(SOURCE / "examples" / "faces" / "servos.toml", "servos")
     outputs = convert(rig)
     lines = [[int(x, 16) for x in line.split()] for line in output("servos")]

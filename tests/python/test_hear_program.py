@@ -88,8 +88,7 @@ def test_frames_are_those_of_the_library(rate: int, tmp_path: Path) -> None:
 
 
 def test_a_file_is_heard_at_its_level(tmp_path: Path) -> None:
-    """A voice 36 dB below: from a file its lips are those of the loud one, also in the first word; from a pipe, whose
-    level is not known, they are others."""
+    """36 dB below: from a file its lips are those of the loud voice; from a pipe, of unknown level, they are not."""
     loud, faint = voice(0.7), voice(0.7) // 64
     expected = np.array(motion(hear(str(write_wav(tmp_path / "loud.wav", loud)))))
     found = np.array(motion(hear(str(write_wav(tmp_path / "faint.wav", faint)))))
@@ -315,8 +314,7 @@ def test_a_file_that_is_cut_off_is_heard_as_far_as_it_goes(tmp_path: Path, capfd
 
 
 def test_channels_that_cancel_each_other_are_told(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    """One of two plugs the wrong way round: the mean is silence, so the first channel is heard. Channels that differ in
-    another way are mixed, and nothing is said; also where a first pair of samples happens to cancel."""
+    """One of two plugs the wrong way round: the first channel is heard. Others are mixed without a word."""
     path = tmp_path / "stereo.wav"
     quiet = np.zeros(1600, np.int16)
     quiet[3] = 5

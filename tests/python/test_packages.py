@@ -223,8 +223,7 @@ Lines = Callable[..., List[str]]
 
 @pytest.fixture(scope="module")
 def lines_of(arduino: Path, objects: List[Path], tmp_path_factory: pytest.TempPathFactory) -> Lines:
-    """What a sketch of the packed library does on the host: `lines_of(sketch, milliseconds, press, text="")`. `text`
-    comes in over its serial line, its buttons are pressed at `press` milliseconds."""
+    """What a sketch does on the host: `lines_of(sketch, milliseconds, press, text=SERIAL)`, pressed at `press` ms."""
 
     @functools.cache
     def program(sketch: str) -> Path:
@@ -257,9 +256,7 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
 
 @pytest.mark.slow
 def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
-    """A line that is longer than the stream's queue and the buffer of a board's serial line: every vowel opens the jaw,
-    and so does that of the next line, all after the servo's soft start. What is beyond the sketch's own limit is left
-    out, and said so once."""
+    """Longer than a board's buffers: every vowel opens the jaw. What is beyond the sketch's limit is left out, once."""
     for count, least, most, said in ((60, 61, 61, []),
                                      (200, 128, 150, ["too long: the rest of the line is left out"])):
         text = "SIL 600 " + "AA 200 M 100 " * count + ("\n" if said else "\nAA 200\n")
@@ -334,9 +331,7 @@ def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
 
 @pytest.mark.slow
 def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
-    """The library on an ESP32: servo after servo has its first pulse; then every frame is on the wire when its sound is
-    heard, as the float64 rig has it, but for the jaw, whose speed is limited; at rest after that; and all of it again
-    when the button is pressed."""
+    """Servo after servo begins; then every frame is on the wire with its sound, as the float64 rig has it; at rest."""
     lines = lines_of("FaceServos", 14000, 8000)
     assert [line for line in lines if line.startswith("serial")] == [f"serial 3000 {PLAY}", f"serial 8000 {PLAY}"]
     sleep, prescale, wake, *shown = [line.split()[1:] for line in lines if line.startswith("wire")]
@@ -366,8 +361,7 @@ def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
 
 @pytest.mark.slow
 def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
-    """The ratio is the lips' opening over 600 FAP units, between 0 and 1, from the first period on; 0 where lips touch,
-    at 72 units, and between there and 136 in proportion; and 0 after the end."""
+    """The lips' opening over 600 FAP units: 0 up to 72 units, and between there and 136 in proportion."""
     lines = [line.split() for line in lines_of("AvatarMouth", 10000, 5000)]
     assert {words[0] for words in lines} == {"mouth"}
     assert [int(words[1]) for words in lines] == list(range(1, 10000, 20))
@@ -389,8 +383,7 @@ CORE = Path("/usr/share/arduino/hardware/arduino/avr")
 @pytest.mark.skipif(not shutil.which("avr-g++") or not CORE.is_dir(),
                     reason="no Arduino core: install gcc-avr, avr-libc and arduino-core-avr")
 def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
-    """The sketch for the processor that it is for, with Arduino's own core, and the Servo of the stub, which is no part
-    of the core: the track stays in flash, and is all that is large."""
+    """With Arduino's own core, and the stub's Servo: the track stays in flash, and is all that is large."""
     shutil.copyfile(STUB / "Servo.h", tmp_path / "Servo.h")
     sketch = arduino / "extras" / "UnoJaw"
     run("avr-g++", "-mmcu=atmega328p", "-DF_CPU=16000000L", "-DARDUINO=10819", "-DARDUINO_AVR_UNO",
@@ -405,8 +398,7 @@ def test_uno_sketch_compiles_for_an_uno(arduino: Path, tmp_path: Path) -> None:
 @pytest.mark.skipif(not shutil.which("arm-none-eabi-g++"),
                     reason="no arm-none-eabi-g++: install gcc-arm-none-eabi and libstdc++-arm-none-eabi-newlib")
 def test_sketches_compile_for_arm(arduino: Path, tmp_path: Path) -> None:
-    """Where uint32_t is another type than on the host, at the level of warnings that the library holds itself to; the
-    library itself is compiled for ARM by the preset m0."""
+    """Where uint32_t is another type than on the host. The preset m0 compiles the library itself."""
     files = [file for sketch in SKETCHES for file in sketch_files(arduino, sketch)]
     files.sort(key=lambda path: path.suffix != ".ino")  # g++ forgets -x behind a file whose suffix it knows
     run("arm-none-eabi-g++", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", *arduino_options(arduino), "-x",
@@ -483,9 +475,7 @@ def test_component_builds(packed: Packed, tmp_path: Path, kind: str, functions: 
 @pytest.mark.skipif(not CMAKE, reason="no cmake")
 @pytest.mark.skipif("LABIAL_UNITY_SOURCE" not in os.environ, reason="no source of Unity: set LABIAL_UNITY_DIR")
 def test_device_tests_run_as_apps_of_frameworks(tmp_path: Path) -> None:
-    """The test apps of ESP-IDF and PlatformIO name files that exist and suffice. As there, Unity has a unity_config.h
-    behind the app's own folders, and opens its port when the tests begin. Catches a file of ours that is found in its
-    place, and text before the port is open."""
+    """As there, Unity has a unity_config.h behind the app's folders, and opens its port when the tests begin."""
     unity = Path(os.environ["LABIAL_UNITY_SOURCE"])
     (tmp_path / "port").mkdir()
     (tmp_path / "port" / "unity_config.h").write_text(

@@ -137,8 +137,7 @@ SHORT = "every sound is shorter than 5 ms"
     ("_ 4\n", ""), ("<laugh:1> 2\n", ""),
 ])  # fmt: skip
 def test_times_of_another_unit_are_asked_about(text: str, asked: str) -> None:
-    """The first sound that is too long to be speech is named, or that every sound is too short; not of silences and
-    laughs, nor of a sound of just ten seconds."""
+    """The first sound that is too long for speech is named, or that all are too short; no silences, no laughs."""
     done = say(text)
     assert done.returncode == 0
     assert done.stderr.decode() == (f"labial-say: warning: {asked}: is the unit of time right?\n" if asked else "")

@@ -329,8 +329,7 @@ def shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, opening: Path, stand_
 
 @pytest.mark.parametrize("core", [True, False])
 def test_everything_is_in_the_page(avatar: Path, stand_in: Path, shown: Shown, core: bool) -> None:
-    """The avatar's bytes, the rig's weights by the avatar's names, and modules that ask for nothing outside. Before
-    0.172 three had no three.core.js."""
+    """The avatar, the weights by its names, modules that ask for nothing. Before 0.172 three had no three.core.js."""
     if not core:
         (stand_in / "build" / "three.core.js").unlink()
         (stand_in / "build" / "three.module.js").write_text("export const core = 1;")
@@ -430,8 +429,7 @@ def test_the_head_moves_in_a_browser(avatar: Path, shown: Shown, browser: Browse
 @in_a_browser
 @pytest.mark.parametrize("sound", [wav(), wav()[:20] + b"\x63\0" + wav()[22:]], ids=["short", "unknown"])
 def test_the_head_moves_on_without_a_sound(avatar: Path, shown: Shown, browser: Browser, sound: bytes) -> None:
-    """Behind the end of a sound that is shorter than the motion, and where the browser does not play it. On a phone the
-    whole width of the head is seen, and a screen reader is told the time."""
+    """Behind the end of a shorter sound, and where it is not played. On a phone the whole width is seen."""
     Path("a.wav").write_bytes(sound)
     shown(avatar.read_bytes(), "--three", str(tools() / "node_modules" / "three"), "--audio", "a.wav")
     page = browser.page(Path("page.html").absolute().as_uri())

@@ -244,8 +244,7 @@ process.stdout.write(JSON.stringify(found));
 @pytest.mark.slow
 @needs_tools
 def test_espeaks_npm_package_in_six_languages(tmp_path: Path) -> None:
-    """No unknown label, the times that the exporter takes of the same events, and stops that begin in silence. Would
-    catch events of another form, among them labels that fill all eight bytes."""
+    """No unknown label, the exporter's times, stops that begin in silence. Would catch events of another form."""
     texts = [*SENTENCES.items(), ("pt", "Não, mãe, põe o pão à mão, eles chegaram.")]
     given = json.loads(run(node(22), "--input-type=module", "-e", PACKAGED, json.dumps(texts), cwd=tools()))
     sounds = [np.concatenate([np.array(piece, "int16") for piece in pieces]) for _, pieces, _ in given]

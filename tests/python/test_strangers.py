@@ -242,22 +242,23 @@ def test_buffers_beside_an_avatar(tmp_path: Path, told: Told) -> None:
     os.symlink("../outside/a.bin", "in/link.bin")
     os.symlink("a.bin", "in/near.bin")
     os.mkfifo("in/pipe")
+
+    def of(uri: str) -> str:
+        """The name of the avatar with its buffer there."""
+        document["buffers"][0]["uri"] = uri
+        (tmp_path / "in" / "a.gltf").write_text(json.dumps(document))
+        return "in/a.gltf"
+
     for uri, message in (("link.bin", "lies outside the file's folder"), ("pipe", "buffer 0 is no file"),
                          ("none.bin", "buffer 0 is no file"), ("../in/../outside/a.bin", "outside the file's folder"),
                          ("a\0b", "is not a whole .glb")):
-        document["buffers"][0]["uri"] = uri
-        (tmp_path / "in" / "a.gltf").write_text(json.dumps(document))
-        assert message in told("fit", "in/a.gltf", "-o", "a.toml", "--no-figure")
+        assert message in told("fit", of(uri), "-o", "a.toml", "--no-figure")
     (tmp_path / "in" / "a.bin").write_bytes(binary)
     for uri in ("near.bin", "data:application/octet-stream;base64," + base64.b64encode(binary).decode()):
-        document["buffers"][0]["uri"] = uri
-        (tmp_path / "in" / "a.gltf").write_text(json.dumps(document))
-        assert "page takes a .glb" in told("page", "f.csv", "--head", "in/a.gltf", "-o", "p.html")
+        assert "page takes a .glb" in told("page", "f.csv", "--head", of(uri), "-o", "p.html")
     with open("in/large.bin", "wb") as large:
         large.truncate(limits.AVATAR)
-    document["buffers"][0]["uri"] = "large.bin"
-    (tmp_path / "in" / "a.gltf").write_text(json.dumps(document))
-    assert "it and its buffers have 256,0" in told("fit", "in/a.gltf", "-o", "a.toml", "--no-figure")
+    assert "it and its buffers have 256,0" in told("fit", of("large.bin"), "-o", "a.toml", "--no-figure")
 
 
 def test_names_of_shapes_stay_within_their_remark(tmp_path: Path, told: Told) -> None:

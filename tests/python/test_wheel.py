@@ -131,8 +131,7 @@ def test_wheel_serves_every_python(wheel: Path) -> None:
 
 
 def test_installed_wheel_needs_nothing(installed: Path, tmp_path: Path) -> None:
-    """The same frames as everywhere, without numpy; timings from a file and a rig; the exporter says what it needs in
-    one line."""
+    """The same frames as everywhere, timings and a rig without numpy; the exporter says what it needs."""
     plays([installed], {"PATH": str(tmp_path)}, tmp_path)
     (tmp_path / "word.lab").write_text("0 0.1 M\n0.1 0.3 AY\n")
     program = ("import sys, labial\n"
