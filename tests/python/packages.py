@@ -69,12 +69,7 @@ def attributions() -> Dict[str, str]:
             reader = load_hearing if path.stem.startswith("hear_") else load
             found[path.stem] = reader(path).attribution
     assert all(found.values())
-    return {name: single_spaced(text) for name, text in found.items()}
-
-
-def single_spaced(text: str) -> str:
-    """`text` with one space in place of each stretch of white space."""
-    return " ".join(text.split())
+    return {name: " ".join(text.split()) for name, text in found.items()}
 
 
 def warnings(language: str) -> List[str]:

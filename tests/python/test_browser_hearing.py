@@ -11,16 +11,14 @@ from typing import Any, Dict, Iterator
 import numpy as np
 import pytest
 
+import labial
 from browser import Browser, Page, served
 from labial.files.frames import opening
-from labial.hearing import integer
-from labial.hearing.model import load
-from labial.hearing.quantise import quantise
 from npm import lay
-from packages import SOURCE
+from packages import needs_runtime
 
 FLITE = shutil.which("flite")
-pytestmark = [pytest.mark.slow,
+pytestmark = [pytest.mark.slow, needs_runtime,
               pytest.mark.skipif(not FLITE, reason="needs flite: install the Debian package flite")]
 
 TEXT = "Mama may be happy. Papa saw a boat by the water."
@@ -125,13 +123,13 @@ def page(folder: Path, browser: Browser) -> Iterator[Page]:
 
 
 def lips_of(heard: Dict[str, Any], model: str) -> np.ndarray:
-    """(T,) the opening that the exporter's integers make of the recording."""
+    """(T,) the opening that the library makes of the recording."""
     recorded, rate = np.array(heard["samples"]), int(heard["rate"])
     if rate > 48000:
         recorded, rate = recorded[: len(recorded) // 2 * 2].reshape(-1, 2).mean(axis=1), rate // 2
     samples = np.clip(np.round(recorded), -32768, 32767).astype(np.int16)
-    trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
-    return opening(integer.delivered(quantise(trained, f"hear_{model}"), samples, rate).faps)
+    with labial.Hearing(rate, model=f"hear_{model}") as hearing:
+        return opening(np.array([frame.faps for frame in hearing.frames([samples])]))
 
 
 @pytest.mark.parametrize(("kind", "rate", "model"), [

@@ -20,11 +20,8 @@ import pytest
 
 import labial
 from browser import Browser, served
-from labial.hearing import integer
-from labial.hearing.model import load
-from labial.hearing.quantise import quantise
 from npm import FOLDER, TOOLS_MISSING, install, node, tools
-from packages import SOURCE, run
+from packages import SOURCE, needs_runtime, run
 from pages import parse
 from test_npm import SAY, said
 
@@ -33,7 +30,7 @@ BUNDLERS = ("esbuild", "parcel", "rollup", "vite", "webpack")
 LEAVE = ("esbuild", "rollup")
 WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil\n"
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING),
+pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING),
               pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64",
                                  reason="needs x86-64 Linux: npm has node as a package of each platform")]  # fmt: skip
 
@@ -49,16 +46,15 @@ def app(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def wanted() -> List[Any]:
-    """What a server prints: what labial-say makes of the word and the laugh, 13 FAPs after 13 FAPs; what the exporter's
-    integers hear in the sound of lips.js, by both models; what Python makes of its words, phonemes and their ends."""
+    """What a server prints: labial-say's frames, those of hearing, and what Python makes of words."""
     if not SAY:
         pytest.skip("LABIAL_SAY does not name the built labial-say")
     i = np.arange(16000)
     sound = np.where(i % 400 < 200, i * i % 8191, -(i * i % 8191)).astype(np.int16)
     heard: List[int] = []
     for name in ("hear_small", "hear_large"):
-        trained = load(SOURCE / "export" / "models" / f"{name}.npz")
-        heard += integer.delivered(quantise(trained, name), sound).faps.ravel().tolist()
+        with labial.Hearing(model=name) as hearing:
+            heard += [value for frame in hearing.frames([sound]) for value in frame.faps]
     timings = labial.word_timings([("Maybe,", 100, 500), ("people!", 750, None)])
     ends = itertools.accumulate(length for _, length in timings)
     spoken = [item for (label, _), end in zip(timings, ends) for item in ("" if label == "SIL" else label, end / 1000)]

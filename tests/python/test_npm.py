@@ -13,7 +13,6 @@ import random
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
-import hears
 import numpy as np
 import pytest
 
@@ -23,9 +22,6 @@ from labial.corpus import formats
 from labial.corpus.phonesets import ARPABET, AUTO
 from labial.errors import DataError
 from labial.files.faps import CHANNELS, FAP_NAMES
-from labial.hearing import integer
-from labial.hearing.model import load
-from labial.hearing.quantise import quantise
 from labial.rig import FACES, description_of
 from messages import SAMPLES
 from npm import answered
@@ -296,7 +292,7 @@ def test_malformed_timings(tmp_path: Path) -> None:
     assert_alike(tmp_path, cases)
 
 
-# ---- Hearing in the npm package against the exporter's integers ------------------------------------------------------
+# ---- Hearing in the npm package --------------------------------------------------------------------------------------
 
 
 #: Of each { sampleRate, channels, model, blocks } the frames, the stretches and the latency.
@@ -317,7 +313,8 @@ answer(found);
 """
 
 
-def test_frames_are_the_exporters(tmp_path: Path) -> None:
+@needs_runtime
+def test_frames_are_those_of_python(tmp_path: Path) -> None:
     """Catches another model, a rate that is converted otherwise, and frames that are lost between blocks."""
     rng = np.random.default_rng(3)
     sounds, asked = [], []
@@ -333,15 +330,11 @@ def test_frames_are_the_exporters(tmp_path: Path) -> None:
     found = answered(HEAR, asked, tmp_path / "npm")
     assert len(found) == len(sounds)
     for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):
-        trained = load(SOURCE / "export" / "models" / f"hear_{model}.npz")
-        tables = quantise(trained, f"hear_{model}")
-        heard = integer.delivered(tables, sound, rate)
-        shares = integer.visemes(tables, sound, rate).tolist()
-        assert frames == [list(pair) for pair in zip(heard.faps.tolist(), shares)], (model, rate)
-        rows = hears.stretches(heard.scores)
-        assert [row["label"] for row in segments] == [trained.classes[shown] for shown, _, _ in rows]
-        assert [[row["start"], row["end"]] for row in segments] == pytest.approx(
-            np.array([[first, first + length] for _, first, length in rows]) / 50)
+        with labial.Hearing(rate, sound.ndim, model=f"hear_{model}") as hearing:
+            heard = list(hearing.frames([sound]))
+            rows = [(item.name, item.frame / 50, (item.frame + item.frames) / 50) for item in hearing.shown()]
+        assert frames == [[list(frame.faps), list(frame.visemes)] for frame in heard], (model, rate)
+        assert [(row["label"], round(row["start"], 6), round(row["end"], 6)) for row in segments] == rows
         assert latency == pytest.approx(0.28 if model == "ahead" else 0.12, abs=0.002)
 
 

@@ -17,15 +17,9 @@ import pytest
 
 import labial
 from labial.__main__ import main
-from labial.reference.fade import delivered
-from labial.reference.stream import synthesise
-from labial.reference.tables import ExportedTables
 from labial.rig.description import read
 from labial.rig.table import convert, expected
-from labial.tables.model import load
-from labial.tables.phones import read_stream
-from labial.tables.quantise import quantise
-from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, attributions, expected_frames, pack, run, single_spaced, warnings
+from packages import CC, CMAKE, CXX, PROGRAM, SOURCE, attributions, expected_frames, needs_runtime, pack, run, warnings
 from source import notices
 
 STUB = SOURCE / "tests" / "packages" / "arduino_stub"
@@ -117,7 +111,7 @@ def files_of(folder: Path) -> Dict[str, bytes]:
 def test_packages_carry_every_attribution(packed: Packed, kind: str) -> None:
     """The licences of the training data ask for their notices in whatever passes the models on."""
     files = files_of(packed(kind))
-    carried = single_spaced((files["LICENSE"] + files.get("NOTICE", b"")).decode())
+    carried = " ".join((files["LICENSE"] + files.get("NOTICE", b"")).decode().split())
     assert "MIT License" in carried
     assert {Path(name).stem for name in files if name.endswith(".h")} >= set(attributions())
     for name, text in attributions().items():
@@ -306,10 +300,8 @@ HEARD = 3000 + 11 + 200
 
 
 def talk_frames() -> np.ndarray:
-    """(T, 13) FAPs of the sketches' sentence and the way to rest after it, by the float64 reference."""
-    model = load(SOURCE / "export" / "models" / "speech_en.npz")
-    phonemes = read_stream(SOURCE / "examples" / "talk" / "talk.lab", model)
-    return delivered(synthesise(ExportedTables(quantise(model, "bundled")), phonemes))
+    """(T, 13) FAPs of the sketches' sentence and the way to rest after it."""
+    return np.array(labial.render(labial.read_timings(SOURCE / "examples" / "talk" / "talk.lab")))
 
 
 @pytest.mark.slow
@@ -330,6 +322,7 @@ def test_uno_sketch_plays_the_track(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
+@needs_runtime
 def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
     """Servo after servo begins; then every frame is on the wire with its sound, as the float64 rig has it; at rest."""
     lines = lines_of("FaceServos", 14000, 8000)
@@ -360,6 +353,7 @@ def test_face_sketch_moves_five_servos(lines_of: Lines) -> None:
 
 
 @pytest.mark.slow
+@needs_runtime
 def test_avatar_sketch_opens_the_mouth(lines_of: Lines) -> None:
     """The lips' opening over 600 FAP units: 0 up to 72 units, and between there and 136 in proportion."""
     lines = [line.split() for line in lines_of("AvatarMouth", 10000, 5000)]
