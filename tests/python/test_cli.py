@@ -68,52 +68,39 @@ def test_one_command_is_loaded() -> None:
     assert without_packages([["timings", "--help"]]).splitlines()[-1] == "common corpora"
 
 
-@pytest.fixture
-def given(tmp_path: Path) -> Path:
-    save(random_model(1), tmp_path / "model.npz")
-    (tmp_path / "phones.lab").write_text(LAB)
-    return tmp_path
-
-
-def test_synth_articulates(given: Path, capsys: pytest.CaptureFixture) -> None:
+def test_synth_articulates(files: Path, capsys: pytest.CaptureFixture) -> None:
     """Half of each frame, and nothing of what is out of range."""
     frames = []
     for percent in ("100", "50"):
-        assert main(["synth", str(given / "model.npz"), str(given / "phones.lab"), "-o", str(given / "a.csv"),
-                     "--whole", "--articulation", percent]) == 0
-        frames.append(np.loadtxt(given / "a.csv", delimiter=",", skiprows=1)[:, 1:])
+        assert main(["synth", "m.npz", "a.lab", "-o", "a.csv", "--whole", "--articulation", percent]) == 0
+        frames.append(np.loadtxt("a.csv", delimiter=",", skiprows=1)[:, 1:])
     assert np.ptp(frames[0]) > 100 and np.abs(0.5 * frames[0] - frames[1]).max() <= 1
     with pytest.raises(SystemExit):
-        main(["synth", "speech_en", str(given / "phones.lab"), "--articulation", "201"])
+        main(["synth", "speech_en", "a.lab", "--articulation", "201"])
     assert "'201' is not a whole number within 0 .. 200" in capsys.readouterr().err
 
 
-def test_a_closed_output_is_an_error(
-    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, few_streams: None
-) -> None:
+def test_a_closed_output_is_an_error(files: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch,
+                                     few_streams: None) -> None:
     """Catches a command that fails as if by a defect, or passes although nobody gets its output."""
-    phones = str(given / "phones.lab")
-    for command in (["timings", phones], ["synth", str(given / "model.npz"), phones],
-                    ["export", str(given / "model.npz"), "--name", "m", "-o", str(given)]):
+    for command in ("timings a.lab", "synth m.npz a.lab", "export m.npz --name m -o o"):
         monkeypatch.setattr(sys, "stdout", None)
-        assert main(command) == 1
+        assert main(command.split()) == 1
         assert capsys.readouterr().err.splitlines()[-1] == "labial: standard output is closed"
     monkeypatch.setattr(sys, "stdout", None)
-    assert main(["timings", phones, "-o", str(given / "a.lab")]) == 0 and run("p", lambda: 0) == 0
+    assert main(["timings", "a.lab", "-o", "b.lab"]) == 0 and run("p", lambda: 0) == 0
 
 
-def test_export_prints_memory_and_loss(given: Path, capsys: pytest.CaptureFixture, few_streams: None) -> None:
+def test_export_prints_memory_and_loss(files: Path, capsys: pytest.CaptureFixture, few_streams: None) -> None:
     """The files are there and the tables name what was measured."""
-    assert main(["export", str(given / "model.npz"), "--name", "my_model", "-o", str(given / "out"), "--blob"]) == 0
+    assert main("export m.npz --name mine -o out --blob".split()) == 0
     text = capsys.readouterr().out
-    assert {path.name for path in (given / "out").iterdir()} == {
-        "my_model.c", "my_model.h", "my_model_names.c", "my_model.lbm"}  # fmt: skip
+    assert {path.name for path in Path("out").iterdir()} == {"mine.c", "mine.h", "mine_names.c", "mine.lbm"}
     assert "flash, model" in text and "RAM, workspace" in text and "open_jaw" in text and "nats per" in text
 
 
-def test_options_of_one_method_are_not_silently_ignored(
-    given: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_options_of_one_method_are_not_silently_ignored(files: Path, capsys: pytest.CaptureFixture,
+                                                        monkeypatch: pytest.MonkeyPatch) -> None:
     """An option that has no effect with the method is told so; others are passed on without a word."""
     asked = []
     monkeypatch.setattr("labial.train.train", lambda corpus, **options: asked.append(options) or random_model(3))
@@ -125,7 +112,7 @@ def test_options_of_one_method_are_not_silently_ignored(
         ("labial", ["--talker-variance", "0.5"], False), ("paper", ["--talker-variance", "0.5"], True),
         ("paper", ["--normalise"], False), ("labial", ["--normalise"], True),
     ):
-        assert main(["train", "corpus", "-o", str(given / "m.npz"), "--method", method, *options]) == 0
+        assert main(["train", "corpus", "-o", "m.npz", "--method", method, *options]) == 0
         err = capsys.readouterr().err
         assert (f"--method {method}" in err) == warned and all(name in err for name in options[::2] if warned)
     assert asked[1]["look_ahead"] == 0.06 and asked[1]["search_stride"] == 1
@@ -135,16 +122,15 @@ def test_options_of_one_method_are_not_silently_ignored(
 
 
 @pytest.mark.slow
-def test_amplitude_widens_what_is_exported(given: Path, few_streams: None) -> None:
+def test_amplitude_widens_what_is_exported(files: Path, few_streams: None) -> None:
     """Calmed to nothing the target stands still, so that kernels and slopes vanish from the tables."""
     for factor, moves in (("1", True), ("0", False)):
-        out = given / f"out{factor}"
-        assert main(["export", str(given / "model.npz"), "--name", "m", "-o", str(out), "--amplitude", factor]) == 0
-        text = (out / "m.c").read_text()
+        assert main(["export", "m.npz", "--name", "m", "-o", factor, "--amplitude", factor]) == 0
+        text = Path(factor, "m.c").read_text()
         kernels = text[text.index(" kernels[") :]
         words = kernels[kernels.index("{") + 1 : kernels.index("}")].replace(",", " ").split()
         assert any(word != "0x80808080u" for word in words) == moves  # four channels, 128 more than each
-    assert main(["export", str(given / "model.npz"), "--name", "m", "-o", str(given), "--amplitude", "-1"]) == 1
+    assert main("export m.npz --name m -o o --amplitude -1".split()) == 1
 
 
 # ---- Programs with a command line ------------------------------------------------------------------------------------

@@ -370,11 +370,10 @@ def provider(monkeypatch: pytest.MonkeyPatch) -> Any:
     for name in ("core", "core.providers", "core.providers.tts", "core.providers.tts.base", "core.utils",
                  "core.utils.audioRateController", "edge_tts"):
         monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
-    sys.modules["core.providers.tts.base"].TTSProviderBase = Base  # type: ignore[attr-defined]
-    sys.modules["core.utils.audioRateController"].AudioRateController = object  # type: ignore[attr-defined]
-    sys.modules["edge_tts"].Communicate = Communicate  # type: ignore[attr-defined]
+    sys.modules["core.providers.tts.base"].TTSProviderBase = Base
+    sys.modules["core.utils.audioRateController"].AudioRateController = object
+    sys.modules["edge_tts"].Communicate = Communicate
     spec = importlib.util.spec_from_file_location("core.utils.lips", EXAMPLE / "lips.py")
-    assert spec and spec.loader
     lips = importlib.util.module_from_spec(spec)
     monkeypatch.setitem(sys.modules, "core.utils.lips", lips)
     spec.loader.exec_module(lips)
@@ -425,7 +424,7 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
 def test_a_voice_without_times_speaks_on(provider: Any, caplog: pytest.LogCaptureFixture) -> None:
     """Catches a sentence that is lost because its lips are."""
     lips = sys.modules["core.utils.lips"]
-    voice = lips.Voice()  # type: ignore[attr-defined]
+    voice = lips.Voice()
     voice.timed([])
     assert voice.sound(b"a") == b"a" and list(voice.sound(b"a").frames) == []
     voice.timed([{"type": "WordBoundary", "offset": -1, "duration": "x", "text": 3}])

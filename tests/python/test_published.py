@@ -166,7 +166,8 @@ LAB = "0 0.2 SIL\n0.2 0.3 P1\n0.3 0.42 P2\n0.42 0.5 P3\n0.5 0.9 P4\n0.9 1.3 P1\n
 
 
 @pytest.fixture
-def given(tmp_path: Path) -> Path:
+def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
     save(random_model(1, "paper"), tmp_path / "paper.npz")
     save(random_model(1), tmp_path / "labial.npz")
     (tmp_path / "phones.lab").write_text(LAB)
@@ -231,27 +232,24 @@ def wanted(given: Path) -> np.ndarray:
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_has_the_published_motion(given: Path, wanted: np.ndarray, name: str) -> None:
     """Would catch a format that takes its frames from another reference."""
-    out = given / "out"
-    assert main(["synth", str(given / "paper.npz"), str(given / "phones.lab"), "--to", name, "-o", str(out)]) == 0
+    assert main(["synth", "paper.npz", "phones.lab", "--to", name, "-o", "out"]) == 0
     text = io.StringIO()
-    model = load(given / "paper.npz")
-    spoken = [(model.phonemes[phoneme], length) for phoneme, length in read_stream(given / "phones.lab", model)]
+    model = load("paper.npz")
+    spoken = [(model.phonemes[phoneme], length) for phoneme, length in read_stream("phones.lab", model)]
     FORMATS[name].write(text, [with_shares(wanted, spoken, 50)], 50, "paper", len(wanted))
-    assert out.read_text() == text.getvalue()
+    assert Path("out").read_text() == text.getvalue()
 
 
 def test_whole_utterances_and_labials_models_are_as_they_were(given: Path) -> None:
     """The published method's `--whole` is one unit; Labial's models move as the run-time does."""
     for name, option, expected in (
         ("paper", ["--whole"], published.synthesise(
-            FloatTables(load(given / "paper.npz")), read_stream(given / "phones.lab", load(given / "paper.npz")),
-            whole=True)),
+            FloatTables(load("paper.npz")), read_stream("phones.lab", load("paper.npz")), whole=True)),
         ("labial", [], delivered(frames_of(given, "labial", steps))),
         ("labial", ["--exact"], delivered(frames_of(given, "labial", steps), exact=True)),
     ):
-        out = given / f"{name}.csv"
-        assert main(["synth", str(given / f"{name}.npz"), str(given / "phones.lab"), "-o", str(out), *option]) == 0
-        np.testing.assert_allclose(read_frames(out)[1], expected, atol=0.00501)
+        assert main(["synth", f"{name}.npz", "phones.lab", "-o", "out.csv", *option]) == 0
+        np.testing.assert_allclose(read_frames(Path("out.csv"))[1], expected, atol=0.00501)
 
 
 def test_page_plot_and_bake_have_the_published_motion(given: Path, wanted: np.ndarray) -> None:
@@ -286,20 +284,16 @@ def test_export_says_it_too(given: Path, capsys: pytest.CaptureFixture, few_stre
     assert "from the published method, FAP" in text and "by design" in text and "quantisation loss" not in text
 
 
-def test_bundled_models_by_name(
-    given: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture, few_streams: None
-) -> None:
+def test_bundled_models_by_name(given: Path, capsys: pytest.CaptureFixture, few_streams: None) -> None:
     """In every command that takes a model; a file of the same name is another thing."""
-    monkeypatch.chdir(given)
-    (given / "hello.lab").write_text("0 0.2 SIL\n0.2 0.3 B\n0.3 0.5 AY\n0.5 0.8 SIL\n")
-    (given / "laugh.lab").write_text("0 0.2 silence\n0.2 0.3 a\n0.3 0.5 silence\n")
-    assert main(["synth", "speech_en", "hello.lab", "--to", "jsonl", "-o", "hello.jsonl"]) == 0
-    assert len([json.loads(line) for line in (given / "hello.jsonl").read_text().splitlines()]) == 52
-    assert main(["synth", "laughter_synthetic", "laugh.lab", "-o", "laugh.csv"]) == 0
-    assert main(["page", "speech_en", "--phones", "hello.lab", "-o", "hello.html"]) == 0
-    assert main(["bake", "hello.lab", "--model", "speech_en", "-o", "hello.h"]) == 0
-    assert "speech_en" in capsys.readouterr().out or (given / "hello.h").exists()
-    assert main(["export", "speech_en", "--name", "own", "-o", "own"]) == 0
+    Path("hello.lab").write_text("0 0.2 SIL\n0.2 0.3 B\n0.3 0.5 AY\n0.5 0.8 SIL\n")
+    Path("laugh.lab").write_text("0 0.2 silence\n0.2 0.3 a\n0.3 0.5 silence\n")
+    for command in ("synth speech_en hello.lab --to jsonl -o a.jsonl", "synth laughter_synthetic laugh.lab -o a.csv",
+                    "page speech_en --phones hello.lab -o a.html", "bake hello.lab --model speech_en -o a.h",
+                    "export speech_en --name own -o own"):
+        assert main(command.split()) == 0
+    assert len(Path("a.jsonl").read_text().splitlines()) == 52 and Path("a.h").exists()
+    capsys.readouterr()
     assert main(["synth", "./speech_en", "hello.lab"]) == 1
     assert "speech_en: No such file" in capsys.readouterr().err
     assert main(["page", "speech_en", "-o", "hello.html"]) == 1

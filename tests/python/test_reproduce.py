@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 import os
 import re
 import subprocess
@@ -13,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import reproduce
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN
 from labial.evaluate.report import title
@@ -21,15 +21,7 @@ from packages import SOURCE, copy_sources
 from pages import end_session
 
 
-@pytest.fixture(scope="module")
-def reproduce():
-    spec = importlib.util.spec_from_file_location("reproduce", SOURCE / "export" / "reproduce.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def test_the_page_has_the_table_that_is_compared(reproduce) -> None:
+def test_the_page_has_the_table_that_is_compared() -> None:
     """Would catch a heading that no longer matches, which would compare with nothing, and a method without a row."""
     rows = reproduce.committed_split().splitlines()
     assert [re.match(r"\| ([^|]+) \|", row)[1] for row in rows[2:]] == [
@@ -37,7 +29,7 @@ def test_the_page_has_the_table_that_is_compared(reproduce) -> None:
     assert all(len(row.split("|")) == len(reproduce.COLUMNS) + 3 for row in rows)
 
 
-def test_a_figure_that_differs_is_noticed(reproduce, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_a_figure_that_differs_is_noticed(monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     table = reproduce.committed_split()
     monkeypatch.setattr(reproduce, "first_split", lambda: table)
     assert reproduce.split() and "the same figures" in capsys.readouterr().out
@@ -47,7 +39,7 @@ def test_a_figure_that_differs_is_noticed(reproduce, monkeypatch: pytest.MonkeyP
     assert not reproduce.split() and "DIFFERENT" in capsys.readouterr().out
 
 
-def test_a_model_that_differs_is_noticed(reproduce, tmp_path: Path) -> None:
+def test_a_model_that_differs_is_noticed(tmp_path: Path) -> None:
     """In a number, in a word, in a bit of an exported file; but not in the last bits of trained numbers."""
     committed = SOURCE / "export" / "models" / "laughter_synthetic.npz"
     model = load(committed)

@@ -22,6 +22,7 @@ from labial.corpus.episode import Segment
 from labial.errors import LabialError
 from models import random_model, write_wav
 from packages import SOURCE, needs_runtime, run
+from test_see import data_of
 
 pytestmark = needs_runtime
 
@@ -44,7 +45,7 @@ def test_outputs_by_their_names(suffix: str, tmp_path: Path) -> None:
     assert main(["say", "Maybe people hum.", "--voice", "none", "-o", str(path)]) == 0
     text = path.read_text(encoding="utf-8")
     if suffix == "html":
-        data = json.loads(re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.DOTALL)[1])
+        data = data_of(text)
         assert data["title"] == "Maybe people hum." and max(frame[0] for frame in data["frames"]) > 100
         assert [item["label"] for item in data["phonemes"]][:4] == ["SIL", "M", "EY", "B"]
     elif suffix in ("csv", "fap"):
@@ -284,7 +285,6 @@ def test_the_server_mixes_lips(sound: np.ndarray) -> None:
     """examples/beside/server.py: catches sound that is heard at another level than a file's."""
     place = SOURCE / "examples/beside/server.py"
     spec = importlib.util.spec_from_file_location("server", place)
-    assert spec is not None and spec.loader is not None
     server = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(server)
     timings = [("SIL", 400.0), ("AA", 400.0), ("SIL", 200.0)]

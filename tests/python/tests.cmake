@@ -99,12 +99,11 @@ set(variables
 if(LABIAL_REQUIRE_ALL)
   list(APPEND variables LABIAL_REQUIRE_ALL=ON)
 endif()
-if(LABIAL_SPTK)
-  list(APPEND variables "LABIAL_SPTK=${LABIAL_SPTK}")
-endif()
-if(LABIAL_UNITY_SOURCE)
-  list(APPEND variables "LABIAL_UNITY_SOURCE=${LABIAL_UNITY_SOURCE}")
-endif()
+foreach(name IN ITEMS LABIAL_SPTK LABIAL_UNITY_SOURCE)
+  if(${name})
+    list(APPEND variables "${name}=${${name}}")
+  endif()
+endforeach()
 if(TARGET labial-say)
   list(APPEND variables "LABIAL_SAY=$<TARGET_FILE:labial-say>" "LABIAL_HEAR=$<TARGET_FILE:labial-hear>"
     "LABIAL_DEMO_PAGE=${LABIAL_DEMO_PAGE}"
