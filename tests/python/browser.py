@@ -29,7 +29,7 @@ _OPTIONS = (
     "--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--mute-audio", "--no-first-run", "--disable-gpu",
     "--autoplay-policy=no-user-gesture-required", "--disable-dev-shm-usage", "--disable-background-networking",
     "--disable-renderer-backgrounding", "--hide-scrollbars", "--window-size=1200,900",
-)  # fmt: skip
+)
 #: More of them, for pages that draw in three dimensions: without a graphics card.
 THREE_D = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 _PATIENCE = 60.0  # seconds for an answer; a machine may be busy otherwise
@@ -69,7 +69,7 @@ class Browser:
         script = f'exec "$@" 3<&{theirs_in} 4>&{theirs_out}'
         self._log = open(folder.parent / f"{folder.name}.log", "wb")  # noqa: SIM115
         self._process = subprocess.Popen(["bash", "-c", script, "browser", *command], pass_fds=(theirs_in, theirs_out),
-                                         stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)  # fmt: skip
+                                         stdin=subprocess.DEVNULL, stdout=self._log, stderr=self._log)
         os.close(theirs_in)
         os.close(theirs_out)
         self._read, self._write = read, write
@@ -145,7 +145,7 @@ class Page:
     def evaluate(self, expression: str) -> Any:
         """The value of an expression, awaited when it is a promise."""
         result = self.command("Runtime.evaluate", {"expression": expression, "awaitPromise": True,
-                                                   "returnByValue": True, "userGesture": True})  # fmt: skip
+                                                   "returnByValue": True, "userGesture": True})
         if "exceptionDetails" in result:
             details = result["exceptionDetails"]
             raise PageFailed(details.get("exception", {}).get("description") or details["text"])

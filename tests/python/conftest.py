@@ -23,11 +23,11 @@ sys.path += [str(ROOT / name) for name in
 #: Modules whose fixtures take as long as their tests: each runs in one worker, so that these are made only once.
 TOGETHER = ("test_adapters", "test_bundlers", "test_esp32_beside", "test_esp32_hear", "test_kiosk", "test_laughter",
             "test_packages", "test_packages_cmake", "test_speak_page", "test_train", "test_wheel",
-            "test_workers")  # fmt: skip
+            "test_workers")
 
 #: Modules whose pages play sound in a browser, which a busy machine stops for a moment: each test has three tries.
 REAL_TIME = ("test_adapters", "test_browser_hearing", "test_browser_voice", "test_demo", "test_kiosk",
-             "test_speak_page")  # fmt: skip
+             "test_speak_page")
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -20,7 +20,7 @@ from packages import CMAKE, SOURCE, run
 _BUILT = os.environ.get("LABIAL_NPM_PACKAGE", "")
 #: What cannot be had, "" where all is there.
 MISSING = "" if _BUILT or (CMAKE and shutil.which("clang") and shutil.which("wasm-ld")) else (
-    "needs clang and wasm-ld: install the Debian packages clang and lld")  # fmt: skip
+    "needs clang and wasm-ld: install the Debian packages clang and lld")
 FOLDER = SOURCE / "tests" / "npm" / "bundlers"
 NPM = shutil.which("npm") or ""
 #: What the tools of npm lack: bundlers, two versions of node, a compiler of types, as FOLDER's package-lock.json names
@@ -33,7 +33,7 @@ def package(folder: Path) -> Path:
     if _BUILT:
         return Path(_BUILT)
     run(CMAKE, "-S", SOURCE, "-B", folder, f"-DCMAKE_TOOLCHAIN_FILE={SOURCE / 'boards' / 'toolchains' / 'wasm.cmake'}",
-        "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF")  # fmt: skip
+        "-DCMAKE_BUILD_TYPE=Release", "-DLABIAL_BUILD_EXAMPLES=OFF", "-DLABIAL_BUILD_TESTS=OFF")
     run(CMAKE, "--build", folder, "--target", "npm")
     return folder / "npm"
 

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.slow
 
 #: Nothing but the page's own files, no text as script or markup.
 STRICT = ("default-src 'none'; connect-src 'self'; style-src 'self'; script-src 'self'{}; media-src 'self'; "
-          "require-trusted-types-for 'script'; trusted-types 'none'")  # fmt: skip
+          "require-trusted-types-for 'script'; trusted-types 'none'")
 PAGE = """<!DOCTYPE html>
 <html lang="de-AT">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
@@ -112,7 +112,7 @@ def test_screen_readers_and_keyboards_find_the_face(opened: Any) -> None:
     def named() -> Any:
         nodes = page.command("Accessibility.getFullAXTree")["nodes"]
         return [(node["role"]["value"], node["name"]["value"]) for node in nodes
-                if not node.get("ignored") and node["role"]["value"] in ("image", "button")]  # fmt: skip
+                if not node.get("ignored") and node["role"]["value"] in ("image", "button")]
 
     assert ("image", "Ein sprechendes Gesicht") in named()
     page.evaluate("document.documentElement.removeAttribute('lang')")

@@ -124,7 +124,7 @@ def test_client_in_node(folder: Path) -> None:
     """Words that come in time: every frame is that of the whole answer, bit for bit, and none is late."""
     with elevenlabs() as address:
         done = subprocess.run([str(node(22)), "main.js", address, TEXT], cwd=folder, stdout=subprocess.PIPE, check=True,
-                              timeout=60, encoding="utf-8")  # fmt: skip
+                              timeout=60, encoding="utf-8")
     found: Dict[str, Any] = json.loads(done.stdout)
     whole = expected()
     frames = np.array(found["frames"])

@@ -32,7 +32,7 @@ WORD = "0 .1 sil\n.1 .2 m\n.2 .5 AA\n.5 .6 p\n.6 1.4 <laugh:0.7>\n1.4 1.5 sil\n"
 
 pytestmark = [pytest.mark.slow, needs_runtime, pytest.mark.skipif(bool(TOOLS_MISSING), reason=TOOLS_MISSING),
               pytest.mark.skipif(sys.platform != "linux" or os.uname().machine != "x86_64",
-                                 reason="needs x86-64 Linux: npm has node as a package of each platform")]  # fmt: skip
+                                 reason="needs x86-64 Linux: npm has node as a package of each platform")]
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def check_page(browser: Browser, folder: Path, wanted: List[Any], found: bool) -
 def printed(program: Path, script: Path) -> Any:
     """The JSON that a script prints under a node."""
     done = subprocess.run([str(program), str(script)], capture_output=True, encoding="utf-8", timeout=60, check=False,
-                          env={**os.environ, "WORD": WORD, "NODE_OPTIONS": ""}, cwd=script.parent)  # fmt: skip
+                          env={**os.environ, "WORD": WORD, "NODE_OPTIONS": ""}, cwd=script.parent)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
@@ -127,9 +127,9 @@ def test_unbundled_in_chromium(app: Path, browser: Browser, wanted: List[Any], t
     paths = {"labial": "./node_modules/labial/index.js", "labial/": "./node_modules/labial/",
              "labial-laughter": "./node_modules/labial-laughter/index.js",
              "labial-hearing": "./node_modules/labial-hearing/index.js",
-             "labial-words": "./node_modules/labial-words/index.js"}  # fmt: skip
+             "labial-words": "./node_modules/labial-words/index.js"}
     html.write_text(html.read_text().replace(
-        "<script type", f'<script type="importmap">{json.dumps({"imports": paths})}</script><script type'))  # fmt: skip
+        "<script type", f'<script type="importmap">{json.dumps({"imports": paths})}</script><script type'))
     for path in folder.glob("*.js"):
         if path.name != "page.js":  # workers have no import maps
             text = path.read_text()
@@ -184,11 +184,11 @@ def project(npm_package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path
 def compiled(project: Path, files: List[str], module: str = "nodenext", **options: object) -> str:
     settings: Dict[str, object] = {
         "strict": True, "noEmit": True, "target": "es2022", "module": module, "types": ["node"],
-        "lib": ["es2023", "dom", "dom.iterable"], **options}  # fmt: skip
+        "lib": ["es2023", "dom", "dom.iterable"], **options}
     (project / "tsconfig.json").write_text(json.dumps({"compilerOptions": settings, "files": files}))
     program = tools() / "node_modules" / "typescript" / "bin" / "tsc"
     done = subprocess.run([str(node(22)), str(program), "-p", str(project)], capture_output=True, encoding="utf-8",
-                          timeout=120, check=False)  # fmt: skip
+                          timeout=120, check=False)
     assert done.returncode in (0, 1, 2), done.stderr
     return done.stdout + done.stderr
 
@@ -212,7 +212,7 @@ WRONG = {
                     'type Props = InstanceType<GlobalComponents["labial-face"]>["$props"];\n'
                     "// @ts-expect-error a track is no text\n"
                     'export const wrong: Props = { track: "hello" };\n',
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("framework", ["react", "vue"])

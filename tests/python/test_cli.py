@@ -284,7 +284,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     pytest.param(lambda t: [1e-300 * t] * 13, SYLLABLES, 3, marks=pytest.mark.slow),
     (lambda t: [float(t)] * 13, "0 2 SIL\n", 2),
     (lambda t: [float(t)] * 13, "0 .001 AA\n", 2), (lambda t: [float(t)] * 13, "0 86000 AA\n", 1),
-], ids=["zeros", "constants", "1e300", "far", "1e-300", "silence", "short", "long"])  # fmt: skip
+], ids=["zeros", "constants", "1e300", "far", "1e-300", "silence", "short", "long"])
 def test_absurd_corpora(tmp_path: Path, told: Told, frames: Callable, lab: str, count: int) -> None:
     """Would catch a traceback in training, and a model that is trained but cannot be read or exported."""
     pytest.importorskip("sklearn")
@@ -334,8 +334,7 @@ def test_names_that_are_not_utf8(files: Path) -> None:
     script = "import sys\nfrom labial.__main__ import main\nsys.exit(any([main(a.split('|')) for a in sys.argv[1:]]))"
     asked = [["timings", f"{name}.lab"], ["bake", f"{name}.csv", "-o", "o.h"], ["page", f"{name}.csv", "-o", "o.html"],
              ["rig", "face.toml", "-o", name, "--no-figure"]]
-    asked += [["synth", f"{name}.npz", "a.lab", "-o", f"{name}.{kind}", "--to", kind]
-              for kind in FORMATS]
+    asked += [["synth", f"{name}.npz", "a.lab", "-o", f"{name}.{kind}", "--to", kind] for kind in FORMATS]
     for arguments, status in ((asked, 0), ([["timings", f"{name}.none"]], 1)):
         command = [sys.executable, "-c", script, *map("|".join, arguments)]
         done = subprocess.run(command, check=False, capture_output=True)

@@ -283,7 +283,7 @@ def page_of(folder: Path, sound: str) -> str:
 @pytest.mark.parametrize("options", [
     {"format": "WAV", "subtype": "PCM_16"}, {"format": "WAV", "subtype": "FLOAT"}, {"format": "MP3"},
     {"format": "OGG", "subtype": "OPUS"},
-], ids=lambda options: "-".join(options.values()))  # fmt: skip
+], ids=lambda options: "-".join(options.values()))
 def test_page_plays_ones_own_sound(browser: Browser, tmp_path: Path, options: Dict[str, str]) -> None:
     """Catches a kind of sound that the browser refuses, and a sound that begins elsewhere."""
     soundfile = pytest.importorskip("soundfile")

@@ -309,7 +309,7 @@ def test_good_page_passes(tmp_path: Path, given: Given) -> None:
     ("```yaml\na: [\n```\n", "page.md:2"),
     ("```ini\n[a\n```\n", "page.md:2"),
     ("```toml\n# ../x.toml\n```\n", "outside"),
-])  # fmt: skip
+])
 def test_bad_page_fails(tmp_path: Path, given: Given, text: str, complaint: str) -> None:
     with pytest.raises((PageError, MissingTool)) as raised:
         check(tmp_path, text, given)

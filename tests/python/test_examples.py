@@ -73,7 +73,7 @@ def test_speaks_and_prints(tmp_path: Path) -> None:
     (["--delay", "-1", "x"], "argument --delay: '-1' is not a number from 0 to 10"),
     (["--servos", "none", "x"], "argument --servos: invalid choice"),
     pytest.param(["--voice", "klingonish", "x"], "espeak-ng has no voice 'klingonish'", marks=needs_espeak),
-])  # fmt: skip
+])
 def test_what_fails_says_so(tmp_path: Path, arguments: List[str], complaint: str) -> None:
     done = program("--servos", "print", "--sound", "none", *arguments, folder=tmp_path)
     assert done.returncode == (2 if complaint.startswith("argument ") else 1) and done.stdout == ""

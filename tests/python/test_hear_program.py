@@ -264,7 +264,7 @@ def both(path: Path, capfd: pytest.CaptureFixture[str]) -> List[Tuple[int, str, 
     """Exit status, motion and what is said of labial-hear and `labial hear`, for a file and for standard input."""
     done = hear(str(path)), hear("-", data=path.read_bytes())
     found = [(one.returncode, one.stdout.decode(), one.stderr.decode().replace("labial-hear: ", "labial: "))
-             for one in done]  # fmt: skip
+             for one in done]
     stdin = sys.stdin
     for name in (str(path), "-"):
         with open(path, "rb") as file:
@@ -310,7 +310,7 @@ def test_channels_that_cancel_each_other_are_told(tmp_path: Path, capfd: pytest.
     quiet = np.zeros(1600, np.int16)
     quiet[3] = 5
     cases = [(SOUND, -SOUND, True), (SOUND, -(SOUND - SOUND // 20), True), (SOUND, -(SOUND // 2), False),
-             (SOUND, 0 * SOUND, False), (np.append(quiet, SOUND), np.append(-quiet, SOUND), False)]  # fmt: skip
+             (SOUND, 0 * SOUND, False), (np.append(quiet, SOUND), np.append(-quiet, SOUND), False)]
     for first, second, cancel in cases:
         write_wav(path, np.stack([first, second], axis=1), 16000)
         expected = np.stack([first, first if cancel else second], axis=1)

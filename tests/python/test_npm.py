@@ -108,7 +108,7 @@ def description(rng: random.Random) -> str:
         mixed = ", ".join(f"{name} = {rng.uniform(-1, 1):.3f}" for name in rng.sample(FAP_NAMES, rng.randrange(1, 6)))
         lines += [f"[output.shape_{number}]", f"from = {{ {mixed} }}", f"neutral = {rng.uniform(-0.3, 0.3):.4f}",
                   f"full = {rng.choice([0, 1])}", f"reach = {rng.uniform(80, 900):.1f}", "minimum = 0",
-                  f"maximum = {rng.uniform(0.3, 1):.2f}"]  # fmt: skip
+                  f"maximum = {rng.uniform(0.3, 1):.2f}"]
         if rng.random() < 0.3:
             lines += ["closed = 0.1"]
         if number % 3 == 1:
@@ -143,7 +143,7 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
              changed(curve=3), changed(curve=[[1, 2]]), changed(curve=[[0, 0, 2**25 + 1]]),
              changed(curve=[[0, 0, "1"]]),
              changed(curve=[[5, 0, 1], [5, 0, 1]]), changed(curve=[[place, 0, 1] for place in range(9)]),
-             json.dumps({**first, "outputs": {some: None}})]  # fmt: skip
+             json.dumps({**first, "outputs": {some: None}})]
     found = answered(RIGS, {"rigs": texts, "frames": frames, "wrong": wrong}, tmp_path / "npm")
     for path, weights in zip(paths, found["converted"]):
         rig = labial.Rig(path)
@@ -161,7 +161,7 @@ def test_weights_are_those_of_python(tmp_path: Path) -> None:
     ('unit = "us"\n[output.jaw]\nfrom = "jaw"\nneutral = 1400\nfull = 1900\n', "unit: --json is for faces of weights"),
     ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nslew = 0.1\n', "output.jaw.slew: is for"),
     ('unit = "weight"\n[output.jaw]\nfrom = "jaw"\nneutral = 0\nfull = 1\nacceleration = 0.05\n', "jaw.acceleration"),
-])  # fmt: skip
+])
 def test_servos_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, message: str) -> None:
     """One line that names the file, and no file."""
     (tmp_path / "face.toml").write_text(text)
@@ -282,7 +282,7 @@ MALFORMED: List[Tuple[str, Any]] = [
     ("fromHeadTTS", {"phonemes": ["m"], "vtimes": [0, 1], "vdurations": [5]}),
     ("fromHeadTTS", {"phonemes": [1], "vtimes": [0], "vdurations": [5]}), ("fromHeadTTS", {"phonemes": []}),
     ("fromKokoro", {"phonemes": "ma", "pred_dur": [1, 2, 3]}), ("fromKokoro", {"phonemes": 3, "pred_dur": []}),
-]  # fmt: skip
+]
 
 
 def test_malformed_timings(tmp_path: Path) -> None:
@@ -326,7 +326,7 @@ def test_frames_are_those_of_python(tmp_path: Path) -> None:
         cuts = np.sort(rng.integers(0, len(sound), 12))
         sounds.append((model, rate, sound))
         asked.append({"sampleRate": rate, "channels": sound.ndim, "model": model,
-                      "blocks": [block.ravel().tolist() for block in np.split(sound, cuts)]})  # fmt: skip
+                      "blocks": [block.ravel().tolist() for block in np.split(sound, cuts)]})
     found = answered(HEAR, asked, tmp_path / "npm")
     assert len(found) == len(sounds)
     for (model, rate, sound), (frames, segments, latency) in zip(sounds, found):

@@ -150,7 +150,7 @@ def test_what_is_no_file_is_written_directly(given: Path) -> None:
 @pytest.mark.parametrize(("target", "complaint"), [
     ("nowhere/x", "there is no folder nowhere"), ("folder", "a folder, not a file"), ("", "not the name of a file"),
     ("a.lab/x", "Not a directory"), ("n" * 300, "File name too long"),
-])  # fmt: skip
+])
 def test_outputs_are_checked_before_the_work(idle: Path, capsys: pytest.CaptureFixture, target: str,
                                              complaint: str) -> None:
     """Would catch a training of hours whose model has nowhere to go."""

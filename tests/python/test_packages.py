@@ -203,7 +203,7 @@ def test_arduino_layout(arduino: Path) -> None:
     assert not {"hear_host.h", "hear_ahead.h"} & set(properties["includes"].split(","))  # too large for sketches
     uno = ["UnoJaw"]  # does not use the library, whose architectures are others: no example of it
     assert len(SKETCHES) >= 2 and sorted(path.name for path in (arduino / "examples").iterdir()) == [
-        name for name in SKETCHES if name not in uno]  # fmt: skip
+        name for name in SKETCHES if name not in uno]
     assert [path.name for path in (arduino / "extras").iterdir()] == uno and "avr" not in properties["architectures"]
     rows = [line.split("\t") for line in (arduino / "keywords.txt").read_text(encoding="utf-8").splitlines()]
     assert {"labial_tick": "KEYWORD2", "labial_t": "KEYWORD1", "LABIAL_DONE": "LITERAL1"}.items() <= dict(rows).items()
@@ -251,8 +251,7 @@ def test_arduino_sketches_run(lines_of: Lines) -> None:
 @pytest.mark.slow
 def test_jaw_sketch_loses_nothing_of_a_long_line(lines_of: Lines) -> None:
     """Longer than a board's buffers: every vowel opens the jaw. What is beyond the sketch's limit is left out, once."""
-    for count, least, most, said in ((60, 61, 61, []),
-                                     (200, 128, 150, ["too long: the rest of the line is left out"])):
+    for count, least, most, said in ((60, 61, 61, []), (200, 128, 150, ["too long: the rest of the line is left out"])):
         text = "SIL 600 " + "AA 200 M 100 " * count + ("\n" if said else "\nAA 200\n")
         lines = lines_of("JawServo", 5000 + 300 * most, 0, 64, text=text)
         assert [line for line in lines[3:] if not line.startswith("servo ")] == said

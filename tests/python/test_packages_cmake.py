@@ -70,7 +70,7 @@ def test_the_published_method_has_a_variable_of_its_own(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("asked", "complaint"), [
-    ("labial 99.1 REQUIRED", "99.1"), ("labial REQUIRED COMPONENTS french", "french")])  # fmt: skip
+    ("labial 99.1 REQUIRED", "99.1"), ("labial REQUIRED COMPONENTS french", "french")])
 def test_find_package_refuses(installed: Path, tmp_path: Path, asked: str, complaint: str) -> None:
     """Another minor version and a model that there is not end with an error that names it."""
     (tmp_path / "CMakeLists.txt").write_text(HEAD + f"find_package({asked})\n")

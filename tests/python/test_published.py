@@ -95,7 +95,7 @@ def test_the_whole_method_by_other_programs() -> None:
     ([2, 30, 4, 5], [0, 1, 0, 1], 0, [Piece(0, 32, 0, OVERLAP), Piece(24, 41, OVERLAP, 0)]),
     ([4, 0, 3, 0], [0, 1, 0, 1], 0, [Piece(0, 7, 0, 0)]),
     ([0, 0], [1, 1], 0, []),
-])  # fmt: skip
+])
 def test_units_run_from_boundary_to_boundary_inclusive(counts: List[int], boundary: List[int], least: int,
                                                        expected: List[Piece]) -> None:
     assert pieces(counts, list(map(bool, boundary)), *[least] * bool(least)) == expected
@@ -374,8 +374,7 @@ def test_every_departure_changes_something(corpus, training) -> None:
     timeline = utterances(corpus[11:], SPEECH, 50)[0].timeline
     model = training.model("labial")
     plain = DEPARTURES[0].synthesise(model, timeline)
-    same = {item.title for item in DEPARTURES[1:]
-            if np.array_equal(item.synthesise(item.back(model), timeline), plain)}
+    same = {item.title for item in DEPARTURES[1:] if np.array_equal(item.synthesise(item.back(model), timeline), plain)}
     assert same <= {"pairs"}
 
 

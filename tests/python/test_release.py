@@ -109,11 +109,11 @@ def test_the_bill_says_what_is_in_each_package(tmp_path: Path) -> None:
     assert {item["ref"]: item["dependsOn"] for item in made["dependencies"][1:]} == {
         "labial-1.0.0-npm.tgz": ["model:speech_en"], "labial-words-1.0.0-npm.tgz": ["words:words_en"],
         "labial-hearing-1.0.0-npm.tgz": ["model:hear_large", "model:hear_small"],
-        "labial-1.0.0-py3-none-any.whl": ["model:speech_en", "words:words_en"]}  # fmt: skip
+        "labial-1.0.0-py3-none-any.whl": ["model:speech_en", "words:words_en"]}
     version = labial.__version__
     assert [item["purl"] for item in made["components"] if item["type"] == "file"] == [
         f"pkg:npm/labial@{version}", f"pkg:pypi/labial@{version}", f"pkg:npm/labial-hearing@{version}",
-        f"pkg:npm/labial-words@{version}"]  # fmt: skip
+        f"pkg:npm/labial-words@{version}"]
 
 
 def test_what_ci_takes_from_elsewhere_is_pinned() -> None:
@@ -127,7 +127,7 @@ def test_what_ci_takes_from_elsewhere_is_pinned() -> None:
 def test_what_pip_and_npm_install_has_hashes() -> None:
     """Catches a package that CI installs and nobody pinned, and a lock file that is not made anew."""
     locks = {name: locked(SOURCE / name) for name in ("tests/requirements.lock", "tests/tracking/requirements.lock",
-                                                      "packaging/wheels.txt")}  # fmt: skip
+                                                      "packaging/wheels.txt")}
     assert all(len(lock) >= 5 for lock in locks.values())
     for name in ("tests/requirements", "tests/tracking/requirements"):
         for line in (SOURCE / f"{name}.txt").read_text(encoding="utf-8").splitlines():
@@ -154,8 +154,7 @@ def locked(path: Path) -> Dict[str, str]:
 
 def test_manifests_name_the_licence_of_the_data() -> None:
     """The speech model is in every package but that of laughter."""
-    for name in ("pyproject.toml", "library.json", "idf_component.yml", "web/packages.json",
-                 "packaging/arduino.py"):  # fmt: skip
+    for name in ("pyproject.toml", "library.json", "idf_component.yml", "web/packages.json", "packaging/arduino.py"):
         assert "MIT AND CC-BY-4.0" in (SOURCE / name).read_text(encoding="utf-8"), name
 
 

@@ -107,7 +107,7 @@ def test_motion_of_hours_is_told(seconds: int, told: bool) -> None:
 @pytest.mark.parametrize(("text", "line", "told"), [
     ("0.0 0.2 sil\n\n0.4 0.3 b\n", 3, "0.4"), ("_ 100\nb 3600001\n", 2, "hour"),
     ("pau:0.1 <laugh 4000>\n", 1, "hour"), ("_ 100\nb\x1b[31m 20\n", 2, "0x1b"),
-])  # fmt: skip
+])
 def test_malformed_lines_are_named(text: str, line: int, told: str) -> None:
     """An error says the line and what is wrong with it, the exit status is 1, and no part of a file is written."""
     done = say(text, "--to", "fap")
@@ -135,7 +135,7 @@ SHORT = "every sound is shorter than 5 ms"
     ("_ 90000\nb 10001\nb 10001\n", "line 2: 'b' lasts 10 s"),
     ("pau:12.0 b:22.0\n", ""), ("_ 90\nm .08\n", SHORT), ("_ 90\nm 4\na 4.4\n", SHORT), ("m 4\na 5\n", ""),
     ("_ 4\n", ""), ("<laugh:1> 2\n", ""),
-])  # fmt: skip
+])
 def test_times_of_another_unit_are_asked_about(text: str, asked: str) -> None:
     """The first sound that is too long for speech is named, or that all are too short; no silences, no laughs."""
     done = say(text)
@@ -185,7 +185,7 @@ def test_laughter() -> None:
 
 
 @pytest.mark.parametrize("data", [b"\xff\xfea", b"\xfe\xff\xd8\x00\x00a", b"\xff\xfe\x00\xdc", b"\xff\xfe\x3d\xd8",
-                                  b"\xff\xfe\x00\x00", b"\xef\xbb"])  # fmt: skip
+                                  b"\xff\xfe\x00\x00", b"\xef\xbb"])
 def test_broken_encodings_are_errors(data: bytes) -> None:
     """Catches half characters of UTF-16 that become labels."""
     done = say(data)
@@ -214,7 +214,7 @@ def openings(values: List[int]) -> int:
 
 @pytest.mark.parametrize(("text", "start"), [
     ("<laugh 2.0>\npau:0.200 m:0.300 ay:0.500\n", 0.0), ("_ 200\n<laugh:0.7> 2000\nm 100\nAI 200\n", 0.2),
-])  # fmt: skip
+])
 def test_laughs_take_their_time(text: str, start: float) -> None:
     """Catches a laugh that is not one, takes another time than its two seconds, or does not shift what follows."""
     rows = motion(text)
@@ -278,7 +278,7 @@ def known(sound: bytes) -> int:
     ("labial-say", [], PHRASES, len(PHRASES) // 2, lambda _: 21),
     pytest.param("labial-hear", ["-"], SOUND, 12800, known, marks=needs_runtime),
     ("labial-hear", ["-", "--classes"], SOUND, 12800, lambda _: 1),
-], ids=["say", "hear", "classes"])  # fmt: skip
+], ids=["say", "hear", "classes"])
 def test_frames_leave_while_input_arrives(name: str, options: List[str], data: bytes, size: int,
                                           lines: Callable[[bytes], int]) -> None:
     """Catches lines that are kept back, also of a long line of timings that goes on; in the end there are all."""
@@ -311,7 +311,7 @@ USAGE: Dict[str, Tuple[bytes, List[List[str]]]] = {
         *(["-", "--channels", channels] for channels in ("", "0", "3", "mono"))]),
     "labial-say-flite": (b"", SPEAK),
     "labial-say-espeak": (b"", SPEAK),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("name", "arguments"), [(name, row) for name, (_, rows) in USAGE.items() for row in rows])
@@ -337,7 +337,7 @@ def test_help_and_version(name: str, says: bytes) -> None:
 @pytest.mark.parametrize(("name", "options", "data"), [
     ("labial-say", [], TEXT.encode()), ("labial-hear", ["-"], SOUND), ("labial-hear", ["-", "--classes"], SOUND),
     ("labial-hear", ["-", "--to", "fap"], SOUND),
-], ids=["say", "hear", "classes", "fap"])  # fmt: skip
+], ids=["say", "hear", "classes", "fap"])
 def test_a_full_disk_is_an_error(name: str, options: List[str], data: bytes) -> None:
     """Motion that could not be written is not success."""
     with open("/dev/full", "wb") as full:

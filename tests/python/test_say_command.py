@@ -98,7 +98,7 @@ def test_a_recording_is_heard(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     (["page", "a.csv", "-o", "a.png"], "a.png: the name of the output ends in .html or .htm"),
     (["synth", "speech_en", "a.lab", "-o", "a.xyz"], "a.xyz: the name of the output ends in .csv or .fap or .jsonl"),
     (["synth", "speech-en", "a.lab", "-o", "a.csv"], "a bundled model: did you mean speech_en?"),
-])  # fmt: skip
+])
 def test_errors_say_what_to_do(arguments: List[str], problem: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)

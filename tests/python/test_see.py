@@ -56,7 +56,8 @@ def fap(mask: List[int], rows: List[List[int]], header: str = "2.1 x 25 {count}"
 
 
 @pytest.fixture
-def given(tmp_path: Path) -> Path:
+def given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text(frames())
     (tmp_path / "a.lab").write_text(LAB)
     (tmp_path / "a.wav").write_bytes(wav())
@@ -72,7 +73,7 @@ def data_of(text: str, name: str = "labial-data") -> Dict[str, Any]:
 def test_bands_are_what_the_mouth_does(given: Path) -> None:
     bands = read_bands(given / "a.lab")
     assert [(b.label, b.kind) for b in bands] == [
-        ("SIL", "silence"), ("M", "closed"), ("AH", "vowel"), ("V", "labiodental"), ("T", "other")]  # fmt: skip
+        ("SIL", "silence"), ("M", "closed"), ("AH", "vowel"), ("V", "labiodental"), ("T", "other")]
     (given / "laugh.lab").write_text("0 .1 fricative\n.1 .2 a\n.2 .3 xyz\n.3 .4 silence\n")
     kinds = [(b.label, b.kind) for b in read_bands(given / "laugh.lab")]
     assert kinds == [("fricative", "other"), ("a", "vowel"), ("xyz", "other"), ("silence", "silence")]
@@ -102,7 +103,7 @@ def test_fap_files_hold_the_same_motion(tmp_path: Path, entries: int) -> None:
     (fap([3], [[1]], entries=60), "2: expected a mask"),
     (fap([3], [[1]]).replace("0 1\n", "0 x\n"), "3: not a whole number"),
     (fap([3], [[10**400]]), "3: not a whole number"), (fap([3], [[-2000000]]), "3: the value -2e+06 is beyond"),
-])  # fmt: skip
+])
 def test_malformed_fap_names_the_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "a.fap"
     path.write_text(text)
@@ -143,15 +144,15 @@ def test_plot_writes_the_asked_format(given: Path, suffix: str) -> None:
 def test_plot_shows_files_phonemes_and_bands(given: Path) -> None:
     """Catches a file, a phoneme or a channel that is missing from the picture, and bytes that differ between runs."""
     pytest.importorskip("matplotlib")
-    (given / "b").mkdir()
-    (given / "b" / "a.csv").write_text(frames(fps=25))
-    arguments = ["plot", str(given / "a.csv"), str(given / "b" / "a.csv"), "--phones", str(given / "a.lab"),
-                 "--channels", "3,raise_b_midlip_o,fap60,stretch,opening", "-o", str(given / "out.svg")]  # fmt: skip
+    Path("b").mkdir()
+    Path("b/a.csv").write_text(frames(fps=25))
+    arguments = ["plot", "a.csv", "b/a.csv", "--phones", "a.lab", "--channels",
+                 "3,raise_b_midlip_o,fap60,stretch,opening", "-o", "out.svg"]
     assert main(arguments) == 0
     text = (given / "out.svg").read_text()
     words = re.findall(r"<text[^>]*>(.*?)</text>", text)
     assert {"SIL", "M", "AH", "V", "T"} <= set(words)
-    assert {str(given / "a.csv"), str(given / "b" / "a.csv"), "vowel", "silence"} <= set(words)
+    assert {"a.csv", "b/a.csv", "vowel", "silence"} <= set(words)
     assert sum(word.startswith(("FAP 3", "FAP 52", "FAP 60")) for word in words) == 3
     assert {"corner stretch", "lip opening"} <= set(words)
     for colour in ("#fdf0d2", "#f6c9c9", "#d9cdf0", "#e4e7eb"):
@@ -192,10 +193,9 @@ def test_plot_says_how_far_lips_close(given: Path, capsys: pytest.CaptureFixture
     (["page", "a.csv", "-o", "a.html", "--point", "chin=1"], "--rig, --point and --three go with --head"),
     (["page", "a.csv", "-o", "a.html", "--head", "head.glb", "--point", "ear=3", *THREE],
      "no point is called 'ear'"),
-])  # fmt: skip
-def test_errors_are_one_line(given: Path, avatar: Path, stand_in: Path, capsys, monkeypatch, arguments: List[str],
+])
+def test_errors_are_one_line(given: Path, avatar: Path, stand_in: Path, capsys, arguments: List[str],
                              message: str) -> None:
-    monkeypatch.chdir(given)
     Path("rig.toml").write_text(MINE.replace("jawOpen", "beak"))
     Path("empty.wav").touch()
     with open("large.wav", "wb") as large:
@@ -208,17 +208,15 @@ def test_errors_are_one_line(given: Path, avatar: Path, stand_in: Path, capsys, 
 
 def test_page_plays_what_the_file_says(given: Path) -> None:
     """Catches frames, phonemes or sound that are lost or out of step."""
-    out = given / "a.html"
-    assert main(["page", str(given / "a.csv"), "--phones", str(given / "a.lab"), "--audio", str(given / "a.wav"),
-                 "--title", "</script><b>&", "-o", str(out)]) == 0  # fmt: skip
-    text = out.read_text(encoding="utf-8")
+    assert main([*"page a.csv --phones a.lab --audio a.wav -o a.html --title".split(), "</script><b>&"]) == 0
+    text = Path("a.html").read_text(encoding="utf-8")
     data = data_of(text)
     assert data["title"] == "</script><b>&" and "</script><b>" not in text
     assert data["fps"] == 50 and data["start"] == 0 and data["channels"] == list(FAP_COLUMNS)
     assert np.abs(np.array(data["frames"]) - read_motion(given / "a.csv").frames).max() <= 0.5
     assert [(p["label"], p["start_frame"], p["frames"], p["kind"]) for p in data["phonemes"]] == [
         ("SIL", 0, 5, "silence"), ("M", 5, 5, "speech"), ("AH", 10, 5, "speech"), ("V", 15, 5, "speech"),
-        ("T", 20, 5, "speech")]  # fmt: skip
+        ("T", 20, 5, "speech")]
     kind, _, content = data["audio"].partition(",")
     assert kind == "data:audio/wav;base64" and base64.b64decode(content) == wav()
 
@@ -227,7 +225,7 @@ def test_page_plays_what_the_file_says(given: Path) -> None:
     ({"format": "WAV", "subtype": "PCM_16"}, "audio/wav"), ({"format": "FLAC"}, "audio/flac"),
     ({"format": "MP3"}, "audio/mpeg"), ({"format": "OGG", "subtype": "VORBIS"}, "audio/ogg"),
     ({"format": "OGG", "subtype": "OPUS"}, "audio/ogg"),
-])  # fmt: skip
+])
 def test_page_takes_what_encoders_write(given: Path, options: Dict[str, str], kind: str) -> None:
     """A format that is taken for another one, which some browsers then refuse."""
     soundfile = pytest.importorskip("soundfile")
@@ -243,7 +241,7 @@ def test_page_begins_where_the_motion_does(tmp_path: Path) -> None:
     data = data_of(page(read_motion(tmp_path / "a.csv"), read_bands(tmp_path / "a.lab")))
     assert data["start"] == 0.15 and "audio" not in data
     assert [(p["label"], p["start_frame"], p["frames"]) for p in data["phonemes"]] == [
-        ("M", 0, 3), ("AH", 3, 5), ("V", 8, 5), ("T", 13, 5)]  # fmt: skip
+        ("M", 0, 3), ("AH", 3, 5), ("V", 8, 5), ("T", 13, 5)]
 
 
 def test_player_requests_nothing() -> None:
@@ -252,7 +250,7 @@ def test_player_requests_nothing() -> None:
     assert text.count(DATA_PLACE) == text.count(MOUTH_PLACE) == 1 and text.index(DATA_PLACE) < text.index(MOUTH_PLACE)
     policy = re.search(r'http-equiv="Content-Security-Policy"\s+content="([^"]*)"', text)
     assert policy and policy.group(1) == ("default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
-                                          "img-src data:; media-src data:")  # fmt: skip
+                                          "img-src data:; media-src data:")
     drawing = MOUTH.read_text(encoding="utf-8")
     assert "</script" not in drawing and "<!--" not in drawing
     text += drawing.replace("http://www.w3.org/2000/svg", "")  # a name, which nothing fetches

@@ -161,7 +161,7 @@ def begin(closure: ctypes.CDLL, levels: List[Tuple[int, int]], before: int, burs
     ([(100, 8000), (20, 0), (30, 8000), (40, 3000)], 0, 150, 150),  # a silence that ends before the burst
     ([(900, 8000), (60, 0), (40, 3000)], 0, 960, 900),  # more sound than is remembered
     ([(10, 8000)], 0, 5, 5), ([], 0, 0, 0), ([(10, 8000)], 0, 900, 900), ([(10, 8000)], 900, 5, 5),
-])  # fmt: skip
+])
 def test_stops_begin_where_the_sound_falls_silent(closure: ctypes.CDLL, levels: List[Tuple[int, int]], before: int,
                                                   burst: int, expected: int, rate: int) -> None:
     """Catches a closure that is not the silence, whatever the rate and the pieces that the sound comes in."""

@@ -297,7 +297,7 @@ def test_code_of_the_page(npm_package: Path, tmp_path: Path) -> None:
         "42": "forty-two", "1984": "nineteen eighty-four", "1900": "nineteen hundred", "1905": "nineteen oh five",
         "2003": "two thousand three", "2024": "twenty twenty-four", "12.5": "twelve point five",
         "1,234": "one thousand two hundred thirty-four",
-    }  # fmt: skip
+    }
     found = json.loads(run(node(22), tmp_path / "page.js", json.dumps(list(written))))
     assert 1.0 < found["seconds"] and abs(found["lips"] - 12 / 50 - found["seconds"]) < 0.02  # 12 frames of rest
     assert found["said"] == [[text, labial.phonemes(text.replace("-", " "))] for text in written.values()]

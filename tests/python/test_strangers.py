@@ -197,7 +197,7 @@ AVATARS: Dict[str, Tuple[Callable[[], Spoiled], str]] = {
     "midline": (lambda: _lattice(0.5), "on its midline the mouth has"),
     "fan": (_fan, "beside the seam of its lips the face has"),
     "5,000 nodes of a mesh": (_changed(lambda d: d["nodes"].extend([{"mesh": 0}] * 4_999)), ""),
-}  # fmt: skip
+}
 
 
 @needs_runtime
@@ -230,7 +230,7 @@ TEXTS: Dict[str, Tuple[bytes, str]] = {
     "a lying part": (struct.pack("<4sIII4s", b"glTF", 2, 20, 1 << 31, b"JSON"), "the file ends within a part"),
     "empty parts": (struct.pack("<4sII", b"glTF", 2, 12) + bytes(900_000), "is not a whole .glb"),
     "half a head": (b"glTF\x02", "is not a whole .glb"),
-}  # fmt: skip
+}
 
 
 def test_buffers_beside_an_avatar(tmp_path: Path, told: Told) -> None:
@@ -288,7 +288,7 @@ TOMLS: Dict[str, Tuple[str, str]] = {
     "many keys": (FACE + "".join(f"k{n} = 1\n" for n in range(80_000)), "unknown key"),
     "a day": ("unit = 1979-05-27T07:32:00Z\n" + FACE, "unit: "),
     "too large": (FACE + "#" * 1_000_000, "it has 1,000,053 bytes, more than the 1,000,000 that are read"),
-}  # fmt: skip
+}
 
 
 def test_corpora_say_who_speaks_in_toml(tmp_path: Path, told: Told) -> None:
@@ -362,7 +362,7 @@ BOMBS: Dict[str, Tuple[Callable[[], bytes], str]] = {
     "a large member": (_model("kernel.npy", bytes(80_000_000)), "more than the 1"),
     "no states": (_model("log_initial.npy", _npy("(13, 0)", "<f8")), "no states"),
     "negative counts": (_model("component_count.npy", _npy("(9,)", "<i8", b"\xff" * 72)), "component_count[0] is -1"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("array", "message"), [
@@ -375,7 +375,7 @@ BOMBS: Dict[str, Tuple[Callable[[], bytes], str]] = {
     (_npy("(2, 478, 3)", content=struct.pack("<f", float("inf")) * 2_868), "a coordinate is beyond"),
     (_npy("(2, 478, 3)", "<M8[s]", bytes(8) * 2_868), "has the type"), (_npy("(2,)", "<f4", bytes(9)), "has 9 bytes"),
     (_npy("(16000000, 1, 1)", "|i1", bytes(16_000_000)), "landmarks have the shape"),
-], ids=lambda given: repr(given[-24:]) if isinstance(given, bytes) else given[:12])  # fmt: skip
+], ids=lambda given: repr(given[-24:]) if isinstance(given, bytes) else given[:12])
 def test_arrays(tmp_path: Path, told: Told, array: bytes, message: str) -> None:
     """Headers that lie, objects, and numbers that are none."""
     pytest.importorskip("scipy")
@@ -397,7 +397,7 @@ def test_arrays(tmp_path: Path, told: Told, array: bytes, message: str) -> None:
     ({"b.csv": CSV_HEAD.encode() + b"".join(b"%d" % n + 13 * b",1" + b"\n" for n in range(86_400)),
       "b.lab": b"0 1 a" + b"a" * 9_000_000}, "c/x.zip/b.lab:1"),
     ({"n" * 60_000 + ".csv": b""}, "c/x.zip/nnnn"),
-], ids=["bomb", "paths", "bytes", "zeros", "lines", "blank", "rows", "label", "name"])  # fmt: skip
+], ids=["bomb", "paths", "bytes", "zeros", "lines", "blank", "rows", "label", "name"])
 def test_corpora_in_archives(tmp_path: Path, told: Told, members: Mapping[str, bytes], message: str) -> None:
     """Bombs; and files of an archive are read in memory, so that a path in it means nothing."""
     folder = corpus(tmp_path / "c")
@@ -434,7 +434,7 @@ LINES: Dict[str, Tuple[str, bytes, str]] = {
     "TextGrid": ("a.TextGrid", b'File type = "ooTextFile"\nObject class = "TextGrid"\n0\n1\n<exists>\n999999999\n',
                  "a.TextGrid"),
     "UTF-16": ("a.lab", b"\xff\xfe" + b"\x00\xd8" * 400_000, "not UTF-16 text"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("hours", "said"), [(1, False), (20, True)])
@@ -475,7 +475,7 @@ SOUNDS: Dict[str, Tuple[Callable[[], bytes], str]] = {
     "no head": (lambda: b"RIFF" + bytes(900_000), "not a sound that can be read"),
     "loud floats": (lambda: _wav(0, width=4, kind=3, content=struct.pack("<f", 3e38) * 200_000), "a sample is "),
     "parts without end": (lambda: _wav(0, content=bytes(8) * 110_000), ""),
-}  # fmt: skip
+}
 
 
 #: Of each file the commands that read it, and by what it is what the first of them says; of what it says nothing about
@@ -487,12 +487,12 @@ FILES: List[Tuple[str, List[List[str]], Mapping[str, Tuple[Any, str]]]] = [
                ["record", "m.npz", "-o", "r"], ["synth", "m.npz", "f.csv"]], BOMBS),
     *((file, [["timings", file]], {what: (content, message)}) for what, (file, content, message) in LINES.items()),
     ("a.wav", [["hear", "a.wav", "--sound-alone", "--model", "small", "-o", "h.csv"]], SOUNDS),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("file", "commands", "content", "message"), [
     pytest.param(file, commands, *row, id=f"{file}: {what}")
-    for file, commands, rows in FILES for what, row in rows.items()])  # fmt: skip
+    for file, commands, rows in FILES for what, row in rows.items()])
 def test_files(tmp_path: Path, told: Told, file: str, commands: List[List[str]], content: Any, message: str) -> None:
     """What is in the way of an avatar before its meshes are; descriptions, archives, all formats of timings, sounds."""
     data = content() if callable(content) else content
@@ -559,7 +559,7 @@ TEXT_GRID = ''.join(f"{line}\n" for line in (
     'File type = "ooTextFile"', 'Object class = "TextGrid"', "", "xmin = 0", "xmax = 1", "tiers? <exists>", "size = 1",
     "item []:", "    item [1]:", '        class = "IntervalTier"', '        name = "phones"', "        xmin = 0",
     "        xmax = 1", "        intervals: size = 1", "        intervals [1]:", "            xmin = 0",
-    "            xmax = 1", '            text = "AA1"'))  # fmt: skip
+    "            xmax = 1", '            text = "AA1"'))
 
 
 def _given(folder: Path) -> Dict[str, List[List[str]]]:
@@ -596,7 +596,7 @@ def _given(folder: Path) -> Dict[str, List[List[str]]]:
             "a.csv": [["bake", "a.csv", "-o", "o.h"], ["page", "a.csv", "-o", "o.html"],
                       ["plot", "a.csv", "-o", "o.png"]],
             "seen.npz": [["record", "seen.npz", "-o", "r"]], "seen.lab": [["record", "seen.npz", "-o", "r"]],
-            "a.wav": [["hear", "a.wav", "--sound-alone", "-o", "o.csv"]]}  # fmt: skip
+            "a.wav": [["hear", "a.wav", "--sound-alone", "-o", "o.csv"]]}
 
 
 def _mutated(data: bytes, chance: random.Random) -> bytes:
@@ -613,7 +613,7 @@ FUZZED = 2.0 if "LABIAL_REQUIRE_ALL" in os.environ else 0.6
 
 @needs_runtime
 @pytest.mark.parametrize("name", ["a.glb", "a.gltf", "a.toml", "a.npz", "a.lab", "a.json", "a.TextGrid", "a.fap",
-                                  "a.csv", "seen.npz", "seen.lab", "a.wav"])  # fmt: skip
+                                  "a.csv", "seen.npz", "seen.lab", "a.wav"])
 def test_fuzzed_files(tmp_path: Path, told: Told, stand_in: Path, name: str) -> None:  # noqa: F811
     """Would catch a traceback, a hang, memory without bound, two lines; and a bit of an archive that nobody misses."""
     pytest.importorskip("scipy")

@@ -222,7 +222,7 @@ def test_wheels_are_what_their_names_say(built: Dict[str, Path]) -> None:
         files = _contents(wheel)
         info = f"labial-{labial.__version__}.dist-info"
         assert re.findall(r"^Tag: (.*)$", files[f"{info}/WHEEL"].decode(), re.M) == [
-            f"py3-none-manylinux_2_17_{platform}"]  # fmt: skip
+            f"py3-none-manylinux_2_17_{platform}"]
         rows = dict(line.split(",", 1) for line in files[f"{info}/RECORD"].decode().splitlines())
         assert set(rows) == set(files)
         for name, row in rows.items():
@@ -240,8 +240,7 @@ def _contents(wheel: Path) -> Dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def test_the_same_sources_give_the_same_bytes(built: Dict[str, Path], builder: Path,
-                                              tmp_path: Path) -> None:
+def test_the_same_sources_give_the_same_bytes(built: Dict[str, Path], builder: Path, tmp_path: Path) -> None:
     """Catches times, paths and orders of files that come from the machine."""
     again = build(tmp_path / "elsewhere", builder, "aarch64")
     assert again["aarch64"].read_bytes() == built["aarch64"].read_bytes()
@@ -268,12 +267,12 @@ def test_the_wheel_for_aarch64_plays_the_conformance_streams(built: Dict[str, Pa
     assert int(run(QEMU, "-L", ROOT, tmp_path / "flat")) == library._INTERFACE
     conformance = SOURCE / "tests" / "conformance"
     includes = [f"-I{SOURCE / name}" for name in ("include", "lib", "lib/models", "boards", "tests/conformance",
-                                                  "tests/c")]  # fmt: skip
+                                                  "tests/c")]
     run(*zig, *LIMITS, '-DBOARD_NAME="aarch64"', *includes,
         *(conformance / f"{name}.c" for name in ("conformance", "player", "vectors")),
         *sorted((SOURCE / "lib").glob("*.c")),
         *(SOURCE / "lib" / "models" / f"{name}.c" for name in ("speech_en", "laughter_synthetic")),
         SOURCE / "boards" / "text.c", SOURCE / "boards" / "host" / "host.c", "-o", "conformance", cwd=tmp_path,
-        env=environment)  # fmt: skip
+        env=environment)
     said = run(QEMU, "-L", ROOT, tmp_path / "conformance")
     assert re.search(r"^\d\d streams, 0 failures$", said, re.M)
