@@ -161,14 +161,10 @@ def test_the_servo_follows(board: ctypes.CDLL) -> None:
 
 
 #: What the patched lines of xiaozhi-esp32 stand in.
-XIAOZHI = """\
-#include <esp_timer.h>
+XIAOZHI = test_esp32_hear.AUDIO + """
 #include <functional>
-#include <memory>
-#include <vector>
 /* hunk 1 of application.cc */
 /* hunk 2 of application.cc */
-/* hunk 1 of audio_service.cc */
 
 struct AudioStreamPacket {
     int sample_rate = 0;
@@ -176,18 +172,9 @@ struct AudioStreamPacket {
 /* hunk 1 of protocol.h */
 };
 
-struct AudioTask {
-    std::vector<int16_t> pcm;
-/* hunk 1 of audio_service.h */
-
 enum PowerSaveLevel { PERFORMANCE };
 enum AbortReason { kAbortReasonNone };
 enum DeviceState { kDeviceStateSpeaking };
-
-struct AudioCodec {
-    int output_sample_rate() const;
-    void OutputData(std::vector<int16_t> &data);
-};
 
 struct Board {
     void SetPowerSaveLevel(PowerSaveLevel level);
@@ -315,14 +302,6 @@ class Communicate:
         yield {"type": "audio", "data": b"..."}
 
 
-class Socket:
-    def __init__(self) -> None:
-        self.sent: List[Any] = []
-
-    async def send(self, data: Any) -> None:
-        self.sent.append(data)
-
-
 #: What the patched lines of xiaozhi-esp32-server stand in: the part of edge.py, and of sendAudioHandle.py.
 SERVER = '''\
 import edge_tts
@@ -387,11 +366,16 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
     """Catches frames that lose their packet of sound, also behind a sentence that was interrupted."""
     voice = provider.TTSProvider({}, True)
     voice.edge_pitch = "+0Hz"
-    conn = types.SimpleNamespace(websocket=Socket(), session_id="s")
+    sent: List[Any] = []
+
+    async def send(data: Any) -> None:
+        sent.append(data)
+
+    conn = types.SimpleNamespace(websocket=types.SimpleNamespace(send=send), session_id="s")
     flow: Dict[str, int] = {}
     wanted: Dict[int, bytes] = {}
     sounds = 0
-    for text, made, sent in (("Mama may pop", 24, 10), ("Bob may be happy", 30, 30)):
+    for text, made, heard in (("Mama may pop", 24, 10), ("Bob may be happy", 30, 30)):
         said = asyncio.run(voice.text_to_speak(text, str(tmp_path / "a.mp3") if to_file else None))
         assert said == (None if to_file else b"mp3...")
         for k in range(made):
@@ -401,13 +385,13 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
         rows = labial.Beside(EXAMPLE / "face.toml").packets(motion, sample=0, sample_rate=RATE)
         frames = b"".join(b"".join(parse(packet.data).frames) for packet in rows)
         wanted.update({sounds * 3 + k: frames[k : k + 1] for k in range(len(frames))})
-        for packet in voice.queue[:sent]:
+        for packet in voice.queue[:heard]:
             asyncio.run(provider._do_send_audio(conn, packet, flow))
         voice.queue.clear()
-        sounds += sent
+        sounds += heard
     asyncio.run(provider._do_send_audio(conn, b"a sound of its own", flow))
     count, shown = 0, {}
-    for message in conn.websocket.sent:
+    for message in sent:
         if isinstance(message, bytes):
             count += 1
             continue
@@ -416,7 +400,7 @@ def test_a_server_sends_lips_with_its_sound(provider: Any, to_file: bool, tmp_pa
         parsed = parse(base64.b64decode(fields["data"]))
         assert parsed.first == count * 3, "before its sound"
         shown.update({parsed.first + k: row for k, row in enumerate(parsed.frames)})
-    assert count == 41 and [item for item in conn.websocket.sent if isinstance(item, bytes)][0] == b"opus0"
+    assert count == 41 and next(item for item in sent if isinstance(item, bytes)) == b"opus0"
     assert len(shown) > 80 and all(shown[k] == wanted[k] for k in shown)
     assert set(range(110)) - set(shown) == set(range(len(shown), 110)), "without a gap"
 

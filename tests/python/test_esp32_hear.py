@@ -446,7 +446,7 @@ def fill(context: str, parts: Dict[str, List[str]], *suffixes: str) -> str:
 
 
 #: What the patched lines stand in.
-XIAOZHI = """\
+AUDIO = """\
 #include <esp_timer.h>
 #include <memory>
 #include <vector>
@@ -456,13 +456,13 @@ struct AudioTask {
     std::vector<int16_t> pcm;
 /* hunk 1 of audio_service.h */
 
-class AudioCodec {
-public:
+struct AudioCodec {
     void Start();
     int output_sample_rate() const;
     void OutputData(std::vector<int16_t> &data);
 };
-
+"""
+XIAOZHI = AUDIO + """
 class AudioService {
     AudioCodec *codec_;
     void Initialize(AudioCodec *codec);
