@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import base64
 import io
+import itertools
 import json
 import os
 import re
@@ -16,20 +17,21 @@ from typing import Any, Dict, Iterator, List, Tuple
 import numpy as np
 import pytest
 
+import labial
 from browser import Browser, Page
 from labial.__main__ import main
+from labial.files.frames import opening
 from labial.reference.fade import EASE
-from packages import run
+from packages import needs_runtime, run
 from test_see import data_of, frames
 
 PAGE = os.environ.get("LABIAL_DEMO_PAGE", "")
+pytestmark = needs_runtime
 needs_flite = pytest.mark.skipif(not shutil.which("flite"), reason="needs the Debian package flite")
 
 DEMO = Path(__file__).resolve().parents[2] / "examples" / "demo"
 
 VOWELS = ("AA", "AE", "AH", "AO", "AW", "AY", "EH", "ER", "EY", "IH", "IY", "OW", "OY", "UH", "UW")
-#: Channels of a frame: the corners' height.
-CORNERS = (11, 12)
 
 
 @pytest.fixture(scope="module")
@@ -53,22 +55,15 @@ def plain(tmp_path_factory: pytest.TempPathFactory) -> Dict[str, Any]:
     return json.loads(run(program, DEMO / "sentence.flite", DEMO / "laugh.lab", folder / "plain.flite"))
 
 
-def flite_milliseconds(name: str) -> int:
-    """How long a file lasts: the last end time of each line, and the lengths of laughs on lines of their own."""
-    lines = [line.split() for line in (DEMO / name).read_text().splitlines() if line.strip()]
-    ends = [line[1] if line[0] == "<laugh" else line[-1].split(":")[1] for line in lines]
-    return sum(round(float(end) * 1000) for end in ends)
-
-
-def lab_milliseconds() -> int:
-    """How long the laugh lasts: the end of its last line."""
-    return round(float((DEMO / "laugh.lab").read_text().split("\n")[-2].split()[1]) * 1000)
+def milliseconds(name: str) -> int:
+    """How long a file lasts."""
+    return sum(length for _, length in labial.read_timings(DEMO / name))
 
 
 def parts(data: Dict[str, Any]) -> Tuple[int, int]:
     """The frames with which the laugh and the last sentence begin."""
-    first = flite_milliseconds("sentence.flite")
-    begin, end = (int(ms * data["fps"] / 1000 + 0.5) for ms in (first, first + lab_milliseconds()))
+    first = milliseconds("sentence.flite")
+    begin, end = (int(ms * data["fps"] / 1000 + 0.5) for ms in (first, first + milliseconds("laugh.lab")))
     return begin, end
 
 
@@ -78,25 +73,15 @@ def spans(data: Dict[str, Any], kind: str, frm: int = 0) -> List[Tuple[str, int,
             if p["kind"] == kind and p["start_frame"] >= frm]
 
 
-def opening(frame: List[int]) -> int:
-    """FAP units between the lips."""
-    return -(frame[3] + frame[4])
-
-
 def test_frames_are_13_integers_that_move(data: Dict[str, Any]) -> None:
     """None is lost or added where models hand over or run side by side, all are within limits; then rest."""
-    total = flite_milliseconds("sentence.flite") + lab_milliseconds() + flite_milliseconds("laughing.flite")
+    total = milliseconds("sentence.flite") + milliseconds("laugh.lab") + milliseconds("laughing.flite")
     assert len(data["frames"]) == int(total * data["fps"] / 1000 + 0.5) + EASE
     assert any(data["frames"][-EASE - 1]) and not any(data["frames"][-1])
     assert data["channels"] == [f"fap{n}" for n in (3, 16, 17, *range(51, 61))]
-    for frame in data["frames"]:
-        assert len(frame) == 13
-        assert all(type(value) is int and -1860 <= value <= 1860 for value in frame)
-    laugh, both = parts(data)
-    for part in (data["frames"][:laugh], data["frames"][laugh:both], data["frames"][both:]):
-        for channel in (0, 4):
-            values = [frame[channel] for frame in part]
-            assert max(values) - min(values) >= 20
+    frames = np.array(data["frames"])
+    assert frames.shape[1] == 13 and frames.dtype == int and np.abs(frames).max() <= 1860
+    assert all(np.ptp(part[:, [0, 4]], axis=0).min() >= 20 for part in np.split(frames, parts(data)))
 
 
 def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
@@ -104,30 +89,29 @@ def test_phonemes_tile_the_frames(data: Dict[str, Any]) -> None:
     at = 0
     for phoneme in data["phonemes"]:
         assert phoneme["start_frame"] == at and phoneme["frames"] >= 1 and phoneme["label"]
-        assert phoneme["kind"] in ("speech", "laughing", "laughter", "silence")
         at += phoneme["frames"]
     assert at == len(data["frames"]) - EASE
-    kinds = [phoneme["kind"] for phoneme in data["phonemes"] if phoneme["kind"] != "silence"]
-    order = [kind for kind, before in zip(kinds, [None, *kinds]) if kind != before]
-    assert order == ["speech", "laughter", "speech", "laughing", "laughter", "laughing", "speech"]
+    kinds = [kind for kind, _ in itertools.groupby(phoneme["kind"] for phoneme in data["phonemes"]
+                                                   if phoneme["kind"] != "silence")]
+    assert kinds == ["speech", "laughter", "speech", "laughing", "laughter", "laughing", "speech"]
 
 
 def test_the_sentence_breaks_into_laughter_and_recovers(data: Dict[str, Any], plain: Dict[str, Any]) -> None:
     """Before and after it is plain speech; in between corners rise with every word, and the pause laughs."""
-    frames, speech, both = data["frames"], plain["frames"], parts(data)[1]
-    assert len(frames) == len(speech)
+    frames, speech, both = np.array(data["frames"]), np.array(plain["frames"]), parts(data)[1]
+    assert frames.shape == speech.shape
     laughing = spans(data, "laughing", both)
     (_, first, last), = spans(data, "laughter", both)
     begin, end = first - int(2 * data["fps"]), laughing[-1][2]  # it sets in two seconds before the words pause
-    assert begin <= laughing[0][1] and frames[:begin] == speech[:begin]
     ramp = int(0.24 * data["fps"])
-    assert frames[end + ramp :] == speech[end + ramp :] and len(frames) > end + 2 * ramp
+    assert begin <= laughing[0][1] and (frames[:begin] == speech[:begin]).all()
+    assert (frames[end + ramp :] == speech[end + ramp :]).all() and len(frames) > end + 2 * ramp
     for _, word, past in laughing:
         if word >= begin + ramp and past <= end - ramp:
-            assert all(frames[i][c] > speech[i][c] + 30 for i in range(word, past) for c in CORNERS)
-    openings = [opening(frame) for frame in frames[first + ramp : last - ramp]]
-    tops = [i for i in range(1, len(openings) - 1) if openings[i - 1] < openings[i] >= openings[i + 1]]
-    assert len(tops) >= 4 and max(openings) >= 100 > min(openings)
+            assert (frames[word:past, 11:] > speech[word:past, 11:] + 30).all(), "the corners"
+    lips = opening(frames[first + ramp : last - ramp])
+    tops = (lips[:-2] < lips[1:-1]) & (lips[1:-1] >= lips[2:])
+    assert tops.sum() >= 4 and lips.max() >= 100 > lips.min()
 
 
 def test_sound_is_that_of_the_timings(data: Dict[str, Any]) -> None:
@@ -168,8 +152,8 @@ def test_sound_is_what_flite_says(tmp_path: Path) -> None:
     first, _, last = (DEMO / "laughing.flite").read_text().strip().split("\n")
     assert first.split() == bear[:-1] and last.split() == maybe and bear[-1].startswith("pau:")
     samples, rate = soundfile.read(DEMO / "speech.flac", dtype="int16")
-    laugh, pause = flite_milliseconds("sentence.flite"), flite_milliseconds("laughing.flite")
-    second = laugh + lab_milliseconds()
+    laugh, pause = milliseconds("sentence.flite"), milliseconds("laughing.flite")
+    second = laugh + milliseconds("laugh.lab")
     third = second + pause - round(float(maybe[-1].split(":")[1]) * 1000)
     for name, begin in (("sentence", 0), ("bear", second), ("maybe", third)):
         spoken, _ = soundfile.read(tmp_path / f"{name}.wav", dtype="int16")
