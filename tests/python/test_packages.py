@@ -10,7 +10,7 @@ import re
 import shutil
 import zipfile
 from pathlib import Path
-from typing import Callable, Dict, List
+from typing import Callable, Dict, List, Set
 
 import numpy as np
 import pytest
@@ -37,24 +37,20 @@ def header_version(root: Path) -> str:
     return ".".join(re.findall(r"^#define LABIAL_VERSION_(?:MAJOR|MINOR|PATCH) (\d+)$", text, re.MULTILINE))
 
 
-def manifest_versions(root: Path) -> Dict[str, str]:
-    """The version in each file that holds one, each read in its own way."""
+def manifest_versions(root: Path) -> Set[str]:
+    """What each file that holds the version says, read in its own way."""
     component = (root / "idf_component.yml").read_text(encoding="utf-8")
     python = (root / "export" / "labial" / "__init__.py").read_text(encoding="utf-8")
-    return {
-        "library.json": json.loads((root / "library.json").read_text(encoding="utf-8"))["version"],
-        "idf_component.yml": re.findall(r'^version: "(.*)"$', component, re.MULTILINE)[0],
-        "__init__.py": re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE)[0],
-        "pack.py": pack("version", root=root).strip(),
-    }
+    return {json.loads((root / "library.json").read_text(encoding="utf-8"))["version"],
+            *re.findall(r'^version: "(.*)"$', component, re.MULTILINE),
+            *re.findall(r'^__version__ = "(.*)"$', python, re.MULTILINE), pack("version", root=root).strip()}
 
 
 def test_every_manifest_has_the_headers_version() -> None:
     """A release with a forgotten file would be announced under two numbers."""
     version = header_version(SOURCE)
     assert re.fullmatch(r"\d+\.\d+\.\d+", version)
-    assert set(manifest_versions(SOURCE).values()) == {version}
-    assert labial.__version__ == version
+    assert manifest_versions(SOURCE) == {version} == {labial.__version__}
     project = (SOURCE / "pyproject.toml").read_text(encoding="utf-8")
     assert 'dynamic = ["version"]' in project and 'input = "export/labial/__init__.py"' in project
     assert re.search(rf"^## {re.escape(version)}\b", (SOURCE / "CHANGELOG.md").read_text("utf-8"), re.MULTILINE)
@@ -67,7 +63,7 @@ def test_version_is_set_everywhere(tmp_path: Path) -> None:
         (shutil.copytree if (SOURCE / name).is_dir() else shutil.copyfile)(SOURCE / name, target)
     assert len(pack("version", "12.3.45", root=tmp_path).splitlines()) == 4
     assert header_version(tmp_path) == "12.3.45"
-    assert set(manifest_versions(tmp_path).values()) == {"12.3.45"}
+    assert manifest_versions(tmp_path) == {"12.3.45"}
     before = (tmp_path / "library.json").read_bytes()
     assert "X.Y.Z" in pack("version", "1.2", root=tmp_path, status=1)
     assert (tmp_path / "library.json").read_bytes() == before

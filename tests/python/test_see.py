@@ -34,10 +34,9 @@ LAB = "0 0.1 sil\n0.1 0.2 M\n0.2 0.3 ah0\n0.3 0.4 v\n0.4 0.5 t\n"
 
 
 def frames(count: int = 25, fps: float = 50.0, start: float = 0.0) -> str:
-    lines = [HEADER]
-    for t in range(count):
-        lines.append(",".join([f"{start + t / fps:.3f}", *(f"{10 * np.sin(t / 5 + k):.2f}" for k in range(13))]))
-    return "\n".join(lines) + "\n"
+    rows = (",".join([f"{start + t / fps:.3f}", *(f"{10 * np.sin(t / 5 + k):.2f}" for k in range(13))])
+            for t in range(count))
+    return "\n".join([HEADER, *rows]) + "\n"
 
 
 def wav() -> bytes:
