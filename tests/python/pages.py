@@ -37,7 +37,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set
+from typing import Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, Set
 
 from packages import CC, CXX, SOURCE
 
@@ -254,15 +254,12 @@ class Runner:
         self._not_run = set(not_run)
         self._blocks = parse(page)
         self._bin = folder.with_name(folder.name + "-bin")
-        self._env = self._environment(given.path)
-
-    def _environment(self, path: str) -> Mapping[str, str]:
         self._bin.mkdir()
         for name, arguments in (("labial", " -m labial"), ("python3", ""), ("python", "")):
             write_program(self._bin / name, arguments)
-        return {**os.environ, "PATH": f"{self._bin}{os.pathsep}{path}", "LABIAL": str(SOURCE),
-                "PYTHONPATH": str(SOURCE / "export"), "PYTHONDONTWRITEBYTECODE": "1", "OPENBLAS_NUM_THREADS": "1",
-                "HOME": str(self._folder)}
+        self._env = {**os.environ, "PATH": f"{self._bin}{os.pathsep}{given.path}", "LABIAL": str(SOURCE),
+                     "PYTHONPATH": str(SOURCE / "export"), "PYTHONDONTWRITEBYTECODE": "1",
+                     "OPENBLAS_NUM_THREADS": "1", "HOME": str(folder)}
 
     def tools(self) -> Dict[str, int]:
         """The TOOLS that the page needs, each with the line of the block that first does."""
@@ -307,7 +304,7 @@ class Runner:
 
     def _call(self, command: Sequence[str], text: Optional[str] = None) -> None:
         with tempfile.TemporaryFile() as output:  # not a pipe, which a process that stays behind would keep open
-            child = subprocess.Popen(list(command), cwd=self._folder, env=dict(self._env), stdout=output,
+            child = subprocess.Popen(list(command), cwd=self._folder, env=self._env, stdout=output,
                                      stderr=subprocess.STDOUT, stdin=subprocess.PIPE if text else subprocess.DEVNULL,
                                      start_new_session=True)
             problems: List[str] = []

@@ -11,7 +11,7 @@ import sys
 import tarfile
 import zipfile
 from pathlib import Path
-from typing import Any, Dict
+from typing import Dict
 
 import pytest
 from packaging.requirements import Requirement
@@ -62,23 +62,21 @@ def test_a_tag_becomes_its_packages(repository: Path, tmp_path: Path) -> None:
     for line in (out / "SHA256SUMS").read_text().splitlines():
         digest, package = line.split("  ")
         assert hashlib.sha256((out / package).read_bytes()).hexdigest() == digest
-    check_bill(json.loads((out / f"{name}.cdx.json").read_text(encoding="utf-8")), out)
     with tarfile.open(out / f"{name}-source.tar.gz") as sources:
         assert b"no C at all" != sources.extractfile(f"{name}/lib/stream.c").read()
     with zipfile.ZipFile(out / f"{name}-amalgamation.zip") as files:
         assert b"labial_tick" in files.read(f"{name}-amalgamation/labial.c")
 
-
-def check_bill(bill: Dict[str, Any], folder: Path) -> None:
-    """It names every package with its sum, the data with its licence, and everything only once."""
-    assert (bill["bomFormat"], bill["specVersion"]) == ("CycloneDX", "1.5")
-    assert bill["metadata"]["component"]["version"] == labial.__version__
-    components = {item["bom-ref"]: item for item in bill["components"]}
-    assert len(components) == len(bill["components"])
+    # The bill names every package with its sum, the data with its licence, and everything only once.
+    whole = json.loads((out / f"{name}.cdx.json").read_text(encoding="utf-8"))
+    assert (whole["bomFormat"], whole["specVersion"]) == ("CycloneDX", "1.5")
+    assert whole["metadata"]["component"]["version"] == labial.__version__
+    components = {item["bom-ref"]: item for item in whole["components"]}
+    assert len(components) == len(whole["components"])
     files = {name: item["hashes"] for name, item in components.items() if item["type"] == "file"}
     others = ("SHA256SUMS", f"labial-{labial.__version__}.cdx.json")
     assert files == {path.name: [{"alg": "SHA-256", "content": hashlib.sha256(path.read_bytes()).hexdigest()}]
-                     for path in folder.iterdir() if path.name not in others}
+                     for path in out.iterdir() if path.name not in others}
     speech = components["model:speech_en"]
     assert "GRID audio-visual speech corpus" in speech["description"]
     assert speech["licenses"] == [{"license": {"id": "CC-BY-4.0"}}]
@@ -86,10 +84,10 @@ def check_bill(bill: Dict[str, Any], folder: Path) -> None:
     assert {"pypi:numpy", "pypi:scipy", "pypi:mediapipe", "pypi:distributed", "build:ziglang"} <= set(components)
     data = ["model:hear_ahead", "model:hear_host", "model:hear_large", "model:hear_small", "model:laughter_synthetic",
             "model:speech_en", "words:words_en"]
-    contents = {item["ref"]: item["dependsOn"] for item in bill["dependencies"]}
+    contents = {item["ref"]: item["dependsOn"] for item in whole["dependencies"]}
     assert set(contents) == {"labial", *files}
-    for name, inside in contents.items():
-        assert inside == data or name.endswith("-npm.tgz"), name
+    for package, inside in contents.items():
+        assert inside == data or package.endswith("-npm.tgz"), package
 
 
 def test_the_bill_says_what_is_in_each_package(tmp_path: Path) -> None:

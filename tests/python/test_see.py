@@ -47,11 +47,9 @@ def wav() -> bytes:
 
 
 def fap(mask: List[int], rows: List[List[int]], header: str = "2.1 x 25 {count}", entries: int = 68) -> str:
-    lines = [header.format(count=len(rows))]
-    for number, row in enumerate(rows):
-        lines += [" ".join("1" if bit in mask else "0" for bit in range(1, entries + 1)),
-                  " ".join(map(str, [number, *row]))]
-    return "\n".join(lines) + "\n"
+    bits = " ".join("1" if bit in mask else "0" for bit in range(1, entries + 1))
+    frames = (f"{bits}\n" + " ".join(map(str, [number, *row])) for number, row in enumerate(rows))
+    return "\n".join([header.format(count=len(rows)), *frames]) + "\n"
 
 
 @pytest.fixture
