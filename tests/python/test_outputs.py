@@ -36,8 +36,10 @@ def test_interrupted_commands(tmp_path: Path, corpus: Path) -> None:  # noqa: F8
     shutil.copytree(corpus, tmp_path / "corpus")
     library = tmp_path / "injector.so"
     run(CC, "-shared", "-fPIC", "-O1", "-o", library, HERE / "injector.c", "-ldl")
-    found = json.loads(run(sys.executable, HERE / "injected.py", library, tmp_path, 20,
-                           env={"LD_PRELOAD": str(library)}))
+    done = subprocess.run([sys.executable, HERE / "injected.py", library, tmp_path, "20"], capture_output=True,
+                          text=True, check=False, env={**os.environ, "LD_PRELOAD": str(library)})
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
     assert {name.split(",")[0] for name in found} == set(COMMANDS) - {"check"}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
 
