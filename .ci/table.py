@@ -39,11 +39,6 @@ def counts(output: str) -> Dict[str, int]:
     return {word: int(count) for count, word in re.findall(r"(\d+) (\w+)", lines[-1])} if lines else {}
 
 
-def left_out_within(name: str, output: str) -> List[str]:
-    """What a test that passed left out of itself, and why."""
-    return [f"{name}: {why}" for why in LEFT_OUT.findall(output)]
-
-
 def warnings_of(log: Path) -> List[str]:
     """What configuring says that it leaves out."""
     text = log.read_text(encoding="utf-8", errors="replace")
@@ -55,12 +50,6 @@ def cases(name: str) -> List[ElementTree.Element]:
     """What ctest reports of a workflow's tests; nothing where there are none."""
     report = BUILD / name / "junit.xml"
     return list(ElementTree.parse(report).getroot().iter("testcase")) if report.exists() else []
-
-
-def failures(name: str) -> List[str]:
-    """What the failed tests of a workflow printed at last, each below a line with its name."""
-    return [f"---- {name}: {case.get('name')}\n{(case.findtext('system-out') or '').strip()[-SHOWN:]}"
-            for case in cases(name) if case.get("status") == "fail"]
 
 
 def workflow_rows(name: str, status: str, seconds: str, processor: str) -> List[Row]:
@@ -79,7 +68,7 @@ def workflow_rows(name: str, status: str, seconds: str, processor: str) -> List[
         passed += case.get("status") == "run"
         if case.get("status") == "fail":
             left_out.append(f"failed: {test}")
-        own, within = counts(output), left_out_within(test, output)
+        own, within = counts(output), [f"{test}: {why}" for why in LEFT_OUT.findall(output)]
         if own:
             done = sum(own.get(word, 0) for word in ("passed", "failed", "error", "errors"))
             time = f"{float(case.get('time', 0)):.0f}"
@@ -100,11 +89,11 @@ def main() -> int:
     for row in rows:
         first, *others = row.left_out or [""]
         print(f"{row.suite:<12} {row.ran:>6} {row.passed:>8} {row.seconds:>8} {row.processor:>10}  {first}".rstrip())
-        for reason in others:
-            print(" " * 50 + reason)
-    for argument in sys.argv[1:]:
-        for failure in failures(argument.split("=")[0]):
-            print(f"\n{failure}")
+        print("".join(" " * 50 + f"{reason}\n" for reason in others), end="")
+    for name in (argument.split("=")[0] for argument in sys.argv[1:]):
+        for case in cases(name):
+            if case.get("status") == "fail":
+                print(f"\n---- {name}: {case.get('name')}\n{(case.findtext('system-out') or '').strip()[-SHOWN:]}")
     return 0
 
 
