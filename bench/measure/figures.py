@@ -47,6 +47,10 @@ def _talkers(source: Sources) -> Dict[str, Talkers]:
             "method": Talkers(source.results.table(TALKERS, ALONE), DEVICE)}
 
 
+def _cell(text: str, digits: int = 2) -> str:
+    return share(number(text), digits)
+
+
 def _kilobytes(value: float, digits: int = 0) -> str:
     return decimal(value / 1000, digits)
 
@@ -65,10 +69,10 @@ def readme(source: Sources) -> Iterator[Sentence]:
                    "training; the published method¹ has {} ± {} |", *talkers["voice"].cells()[3:],
                    *talkers["paper"].cells()[3:])
     yield sentence("| motion, method alone | mean error {} of the largest value on new sentences of the one talker "
-                   "that it learnt; the published method¹ has {} |", share(number(diff[DEVICE]["mean"]), 3),
-                   share(number(diff[PAPER]["mean"]), 3))
+                   "that it learnt; the published method¹ has {} |", _cell(diff[DEVICE]["mean"], 3),
+                   _cell(diff[PAPER]["mean"], 3))
     yield sentence("| closed lips | in {} % of p, b, m; people close them in {} % |",
-                   count(100 * number(voice[DEVICE]["closure"])), count(100 * number(other["human"]["closure"])))
+                   100 * number(voice[DEVICE]["closure"]), 100 * number(other["human"]["closure"]))
 
 
 def costs(source: Sources) -> Iterator[Sentence]:
@@ -79,30 +83,28 @@ def costs(source: Sources) -> Iterator[Sentence]:
     talkers = _talkers(source)
     ram = bench("speech: workspace and labial_t")
     yield sentence("| code | {} | enough to play compiled-in models, `-Os`; the compiler adds {} of its own",
-                   count(bench("code -Os: total")), count(bench("code -Os: compiler's helpers")))
-    yield sentence("| speech model | {} |", count(bench("speech: model")))
-    yield sentence("| laughter model | {} |", count(bench("laughter: model")))
-    yield sentence("| RAM | {} | stream {}, workspace {};", count(ram), count(bench("labial_t")),
-                   count(bench("speech: workspace")))
-    yield sentence("| stack | {} | at most; {} with `-O2` |", count(bench("stack -Os: all of lib")),
-                   count(bench("stack -O2: all of lib")))
+                   bench("code -Os: total"), bench("code -Os: compiler's helpers"))
+    yield sentence("| speech model | {} |", bench("speech: model"))
+    yield sentence("| laughter model | {} |", bench("laughter: model"))
+    yield sentence("| RAM | {} | stream {}, workspace {};", ram, bench("labial_t"), bench("speech: workspace"))
+    yield sentence("| stack | {} | at most; {} with `-O2` |", bench("stack -Os: all of lib"),
+                   bench("stack -O2: all of lib"))
     words = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("rig {}; laughs {}; speaking while laughing {}; names {} and speech's {}; binary models {}; words "
-                   "{} and their tables {} |", *(count(bench(f"code -Os: {name}.c")) for name in
-                                                ("rig", "laugh", "blend", "names")), count(bench("speech: names")),
-                   count(bench("code -Os: blob.c") + bench("code -Os: model.c")), count(words),
-                   count(bench("words: tables")))
+                   "{} and their tables {} |",
+                   *(bench(f"code -Os: {name}.c") for name in ("rig", "laugh", "blend", "names")),
+                   bench("speech: names"), bench("code -Os: blob.c") + bench("code -Os: model.c"), words,
+                   bench("words: tables"))
     yield sentence("| npm package | {} | compressed, fetched by a page that speaks; {} more when it laughs; {} more "
-                   "for words;", *(count(bench(figure, "wasm")) for figure in _NPM[:3]))
+                   "for words;", *(bench(figure, "wasm") for figure in _NPM[:3]))
     for model_name in ("speech", "laughter"):
-        means = [count(bench(f"{model_name}: mean", target)) for target in (*TARGETS, "host")]
+        means = [bench(f"{model_name}: mean", target) for target in (*TARGETS, "host")]
         yield row(f"{model_name}, mean", *means)
     worst = [decimal(bench("speech: worst tick / mean", target), 2) for target in TARGETS]
     yield row("worst tick, times the mean", *worst)
     yield sentence("| share of the core at 50 frames/s, speech | {} % | {} % | {} % |",
                    *(decimal(bench("speech: share of the core", target), 1) for target in TARGETS[:3]))
-    yield sentence("The Cortex-M0 takes {} cycles for the {} instructions", count(round(bench("speech: cycles"), -2)),
-                   count(bench("speech: mean")))
+    yield sentence("Cortex-M0 takes {} cycles for the {}", round(bench("speech: cycles"), -2), bench("speech: mean"))
 
     yield sentence("| | two who speak freely | {} labels, who say commands | all {} |",
                    word(len(talkers["voice"].of(False))), word(len(talkers["voice"].each)))
@@ -116,14 +118,14 @@ def costs(source: Sources) -> Iterator[Sentence]:
         yield row(title, *_closeness(diff[method], other[method], unseen[method]))
     yield sentence("| **Labial, the bundled voice** | {} | | {} | {} | {} |",
                    *_closeness(voice_diff[DEVICE], voice[DEVICE]))
-    yield sentence("| human | 0 | 0 | 1 | 1 | {} |", share(number(other["human"]["closure"])))
+    yield sentence("| human | 0 | 0 | 1 | 1 | {} |", _cell(other["human"]["closure"]))
 
 
 def _closeness(diff: Dict[str, str], other: Dict[str, str], *unseen: Dict[str, str]) -> List[str]:
     """Cells of the last table of docs/figures.md."""
     closed = number(other["closure"])
-    return [*(share(number(one["mean"]), 3) for one in (diff, *unseen)), share(number(other["correlation"])),
-            share(number(other["amplitude"])), share(closed) if closed < 1 else decimal(closed, 2)]
+    return [*(_cell(one["mean"], 3) for one in (diff, *unseen)), _cell(other["correlation"]),
+            _cell(other["amplitude"]), share(closed) if closed < 1 else decimal(closed, 2)]
 
 
 #: The files of labial/words.h.
@@ -143,23 +145,20 @@ _STATES = {"labial_t": ("", " + workspace"),
 
 def design(source: Sources) -> Iterator[Sentence]:
     bench, closures = source.bench, source.record("closures")
-    yield sentence("In contact the outer lips are at most {} FAP units apart, in all of {} p, b, m of eight voices",
-                   count(closures["stops: most"]), count(closures["stops"]))
-    yield sentence("Of {} f, v they are {} or more apart in half and {} or more in 95 %", count(closures["f, v"]),
-                   count(closures["f, v: half"]), count(closures["f, v: 95 %"]))
-    yield sentence("the model has {} bytes;", count(bench("laughter: model")))
-    yield sentence("every three frames: {} on a Cortex-M0, {} on an M4F, {} on x86-64, where hts_engine takes {} for "
-                   "whole units", *(count(bench("MLPG", target)) for target in ("m0", "m4", "host")),
-                   count(bench("MLPG by hts_engine", "host")))
+    yield sentence("are at most {} FAP units apart, in all of {} p, b, m", closures["stops: most"], closures["stops"])
+    yield sentence("Of {} f, v they are {} or more apart in half and {} or more in 95 %", closures["f, v"],
+                   closures["f, v: half"], closures["f, v: 95 %"])
+    yield sentence("the model has {} bytes;", bench("laughter: model"))
+    yield sentence("every three frames: {} on a Cortex-M0, {} on an M4F, {} on x86-64, where hts_engine takes {} for",
+                   *(bench("MLPG", target) for target in ("m0", "m4", "host")), bench("MLPG by hts_engine", "host"))
     yield sentence("A whole tick takes {} instructions on a Cortex-M0; of these the search takes {}, equation 3 {} and "
-                   "the targets {}", *(count(round(value, -2)) for value in (
-                       bench("speech: mean"), bench("speech: viterbi.c"),
-                       bench("speech: trajectory.c"), bench("speech: shape.c"))))
-    yield sentence("`LABIAL_WINDOW` = {} frames ahead", count(source.limit("LABIAL_WINDOW")))
+                   "the targets {}", *(round(value, -2) for value in (bench("speech: mean"), bench("speech: viterbi.c"),
+                   bench("speech: trajectory.c"), bench("speech: shape.c"))))
+    yield sentence("`LABIAL_WINDOW` = {} frames ahead", source.limit("LABIAL_WINDOW"))
     for state, (parts, more) in _STATES.items():
-        yield sentence(f"`{state}`{parts} | {{}}{more} |", count(bench(state)))
+        yield sentence(f"`{state}`{parts} | {{}}{more} |", bench(state))
     streams = (source.root / "tests" / "conformance" / "streams.txt").read_text(encoding="utf-8")
-    yield sentence("| every target | {} conformance streams", count(streams.count("\nstream ")))
+    yield sentence("| every target | {} conformance streams", streams.count("\nstream "))
 
 
 def method(source: Sources) -> Iterator[Sentence]:
@@ -169,14 +168,14 @@ def method(source: Sources) -> Iterator[Sentence]:
         yield row(f"{lag} | {width}", decimal(search[f"{limits} states"], 2), decimal(search[f"{limits} motion"], 2))
     yield sentence("In the {} p, b, m the published method leaves the lips {} to {} FAP units apart, Labial {} to {},",
                    word(int(pictured["speech_en count"])),
-                   *(count(pictured[f"{who} {end}"]) for who in ("paper", "speech_en") for end in ("least", "most")))
+                   *(pictured[f"{who} {end}"] for who in ("paper", "speech_en") for end in ("least", "most")))
     for title, letter, figure in (("instructions, mean per frame", "262,521", "speech: mean"),
                                   ("instructions, longest tick", "5,902,301", "speech: worst tick"),
                                   ("workspace, bytes", "4,960", "speech: workspace"),
                                   ("stack, bytes", "1,248", "stack -Os: all of lib")):
-        yield sentence(f"| {title} | {letter} | {{}} |", count(source.bench(figure)))
+        yield sentence(f"| {title} | {letter} | {{}} |", source.bench(figure))
     for name in ("LAG", "SEARCHED"):
-        yield sentence(f"`LABIAL_{name}` (default {{}})", count(source.limit(f"LABIAL_{name}")))
+        yield sentence(f"`LABIAL_{name}` (default {{}})", source.limit(f"LABIAL_{name}"))
 
 
 def reproduction(source: Sources) -> Iterator[Sentence]:
@@ -205,57 +204,49 @@ def reproduction(source: Sources) -> Iterator[Sentence]:
     unseen = source.results.table(UNSEEN, DIFF)
 
     def mean(table: Table, made: str) -> str:
-        return share(number(table[made]["mean"]), 4)
+        return _cell(table[made]["mean"], 4)
 
-    yield sentence("On GRID, HMM synthesis is far better than the published method ({} against {} in the mean of the "
-                   "four parameters), and it is better on unseen words too ({} against {}).",
-                   *(mean(table, made) for table in (speech, unseen) for made in (HMM, PAPER)))
-    yield sentence("linear regression is better than the published method ({} against {})", mean(laughter, REGRESSION),
-                   mean(laughter, PAPER))
-    yield sentence("gives less error than searching and solving ({} against {})", mean(speech, BLUR),
-                   mean(speech, PAPER))
+    yield sentence("method ({} against {} in the mean of the four parameters), and it is better on unseen words too "
+                   "({} against {}).", *(mean(table, made) for table in (speech, unseen) for made in (HMM, PAPER)))
+    yield sentence("than the published method ({} against {})", mean(laughter, REGRESSION), mean(laughter, PAPER))
+    yield sentence("less error than searching and solving ({} against {})", mean(speech, BLUR), mean(speech, PAPER))
 
 
 def python(source: Sources) -> Iterator[Sentence]:
-    yield sentence("The library has {} KB with all models and names", _kilobytes(
-        source.bench("shared library with both models", "python")))
+    yield sentence("The library has {} KB with", _kilobytes(source.bench("shared library with both models", "python")))
 
 
 def porting(source: Sources) -> Iterator[Sentence]:
     size = source.workspace
     for name in ("WINDOW", "LAG", "SEARCHED", "QUEUE", "REACH", "MODELS"):
-        yield sentence(f"| `LABIAL_{name}` | {{}} |", count(source.limit(f"LABIAL_{name}")))
+        yield sentence(f"| `LABIAL_{name}` | {{}} |", source.limit(f"LABIAL_{name}"))
     window, lag, searched = (source.limit(f"LABIAL_{name}") for name in ("WINDOW", "LAG", "SEARCHED"))
     usual = size()
-    yield sentence("solved ahead of the delivered frame | a frame of delay, {} bytes of workspace",
-                   count(size(LABIAL_WINDOW=window + 1) - usual))
+    yield sentence("solved ahead of the delivered frame | a frame of delay, {}", size(LABIAL_WINDOW=window + 1) - usual)
     yield sentence("decides a state | a frame of delay, {} bytes of workspace for the first, {} for nine",
-                   count(size(LABIAL_LAG=lag + 1) - usual), count(size(LABIAL_LAG=lag + 9) - usual))
+                   size(LABIAL_LAG=lag + 1) - usual, size(LABIAL_LAG=lag + 9) - usual)
     more = size(LABIAL_SEARCHED=searched + 8) - usual
     with_lag = size(LABIAL_SEARCHED=searched + 8, LABIAL_LAG=lag + 1) - size(LABIAL_LAG=lag + 1)
-    yield sentence("a step of the search considers | {} bytes of workspace, {} more for each frame of the lag",
-                   count(more / 8), count((with_lag - more) / 8))
-    yield sentence("With `LABIAL_WINDOW` 1 a frame comes after 80 ms, and the workspace has {} bytes instead of {}.",
-                   count(size(LABIAL_WINDOW=1)), count(usual))
+    yield sentence("a step of the search considers | {} bytes of workspace, {} more", more / 8, (with_lag - more) / 8)
+    yield sentence("comes after 80 ms, and the workspace has {} bytes instead of {}.", size(LABIAL_WINDOW=1), usual)
     found = source.record("window")
-    yield sentence("on the 32 sentences of `sentences.flite`, {} seconds:", count(found["seconds"]))
+    yield sentence("on the 32 sentences of `sentences.flite`, {} seconds:", found["seconds"])
     yield sentence("correlation {} .. {}, mean {}; difference up to {} of a FAP's standard deviation",
                    *(decimal(found[name], 4) for name in ("least", "most", "mean")), decimal(found["difference"], 3))
 
 
 def packages(source: Sources) -> Iterator[Sentence]:
     major, minor = (source.constant("include/labial/labial.h", f"LABIAL_VERSION_{part}") for part in ("MAJOR", "MINOR"))
-    yield sentence("`find_package(labial {})` accepts any {}, but not {}.",
-                   *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
+    yield sentence("{})` accepts any {}, but not {}.", *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
 
 
 def esp32_hear(source: Sources) -> Iterator[Sentence]:
     own, heard = source.bench("esp32-hear, lips.c: flash", "m4"), source.bench("hear_small: flash", "m4")
     clock = source.bench("code -Os: clock.c", "m4")
     yield sentence("| RAM: stream, workspace of `hear_small`, 64 waiting frames | {} |",
-                   count(source.bench("esp32-hear, lips.c: RAM", "m4")))
-    yield sentence("| flash: `lips.c` {}, the library's clock {}, its hearing with `hear_small` {} | {} |", count(own),
-                   count(clock), count(heard), count(own + clock + heard))
+                   source.bench("esp32-hear, lips.c: RAM", "m4"))
+    yield sentence("| flash: `lips.c` {}, the library's clock {}, its hearing with `hear_small` {} | {} |", own, clock,
+                   heard, own + clock + heard)
     for text in ("when it has the {} ms of sound from the frame's begin on",
                  "A frame needs the {} ms of sound after its begin", "holds less than {} ms, the lips are late",
                  "task of its own writes it to I2S, {} ms later.", "**The answer comes {} ms later**"):
@@ -269,10 +260,10 @@ def beside(source: Sources) -> Iterator[Sentence]:
                    "ahead |", _kilobytes(own + heard), _kilobytes(source.bench("esp32-hear, lips.c: RAM", "m4"), 1),
                    source.latency())
     yield sentence("| flash, bytes | {}, and 266 for a division of 32 bits | {} | {}, and divisions |",
-                   *(count(source.bench("code -Os: beside.c", target)) for target in ("m0", "m4", "uno")))
+                   *(source.bench("code -Os: beside.c", target) for target in ("m0", "m4", "uno")))
     yield sentence("| RAM, bytes, 128 frames ahead | {} | {} | {} |",
-                   *(count(source.bench(BESIDE, target)) for target in ("m0", "m4", "uno")))
-    yield sentence("and the library's clock {};", count(source.bench("code -Os: clock.c", "m4")))
+                   *(source.bench(BESIDE, target) for target in ("m0", "m4", "uno")))
+    yield sentence("and the library's clock {};", source.bench("code -Os: clock.c", "m4"))
 
 
 def hearing(source: Sources) -> Iterator[Sentence]:
@@ -282,8 +273,8 @@ def hearing(source: Sources) -> Iterator[Sentence]:
     for model in ("hear_small", "hear_large"):
         worst = [source.bench(f"{model}, 16000 Hz: worst frame", target) for target in TARGETS]
         worst += [source.bench(f"{model}, {rate} Hz: worst frame", "m4") for rate in (24000, 48000)]
-        yield row(f"`{model}`", *(count(source.bench(f"{model}: {what}", "m4")) for what in ("flash", "RAM")),
-                  *(count(round(value, -3)) for value in worst))
+        yield row(f"`{model}`", *(source.bench(f"{model}: {what}", "m4") for what in ("flash", "RAM")),
+                  *(round(value, -3) for value in worst))
     for group, method, cells in _real_lips(source, ("opening", "upper lip", "corners", "mean of five")):
         yield row(f"{group} | {method}", *cells)
     heard = _by_sound(source)
@@ -326,19 +317,17 @@ def words(source: Sources) -> Iterator[Sentence]:
     bench = source.bench
     code = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("{} KB of code and {} KB of tables in flash, 1 KB of RAM for a stream of words and {} bytes of "
-                   "stack", _kilobytes(code, 1), _kilobytes(bench("words: tables")), count(bench("stack -Os: words.h")))
-    yield sentence("A page fetches {} KB for it, compressed, when it asks for words",
-                   _kilobytes(bench(_NPM[2], "wasm")))
+                   "stack", _kilobytes(code, 1), _kilobytes(bench("words: tables")), bench("stack -Os: words.h"))
+    yield sentence("A page fetches {} KB for it, compressed, when it asks for", _kilobytes(bench(_NPM[2], "wasm")))
     for what in ("read", "say"):
-        cells = [count(bench(f"words: {kind} to {what} one", target)) for target in TARGETS
+        cells = [bench(f"words: {kind} to {what} one", target) for target in TARGETS
                  for kind in ("mean", "worst")]
         yield sentence(f"| to {what} |" + " {} / {} |" * len(TARGETS), *cells)
 
 
 def browser(source: Sources) -> Iterator[Sentence]:
     speech, laughter, timed, small, large = (source.bench(figure, "wasm") for figure in _NPM)
-    yield sentence("A page that speaks fetches {} KB, compressed; a page that laughs fetches {} KB more",
-                   _kilobytes(speech), _kilobytes(laughter))
+    yield sentence("{} KB, compressed; a page that laughs fetches {} KB more", _kilobytes(speech), _kilobytes(laughter))
     yield sentence("the package `labial-words`, {} KB,", _kilobytes(timed))
     yield sentence("the package `labial-hearing`, {} KB.", _kilobytes(small))
     yield sentence("a page fetches {} KB more |", _kilobytes(large - small))
@@ -346,10 +335,9 @@ def browser(source: Sources) -> Iterator[Sentence]:
 
 def servos(source: Sources) -> Iterator[Sentence]:
     found, other = source.record("closures"), source.record("closures of awb")
-    yield sentence("a jaw that only followed them would stop {} us short of 1400 in the median *p, b, m*, and reach it "
-                   "in {} %.", count(found["short"]), count(found["reach"]))
+    yield sentence("{} us short of 1400 in the median *p, b, m*, and reach it in {} %.", found["short"], found["reach"])
     yield sentence("the share of {} *p, b, m* within 10 us of `closed`, in {} sentences by each of eight voices",
-                   count(found["stops"]), count(found["sentences"] / len(records.VOICES)))
+                   found["stops"], found["sentences"] / len(records.VOICES))
 
     def cell(slew: str, acceleration: str, sight: str) -> List[str]:
         closed, opening = (found[f"{slew} {acceleration} {sight}: {what}"] for what in ("closed", "opening"))
@@ -365,25 +353,25 @@ def servos(source: Sources) -> Iterator[Sentence]:
         yield sentence(f"| {head} | {{}} ({{}}) |{empty}" + " {} ({}) |" * (len(sights) - 1), *cells)
     yield sentence("The code of `face.c` that such a program links has {} KB on a Cortex-M0, and with what it needs of "
                    "`rig.c` {} KB;", *(_kilobytes(source.bench(f"code -Os: a face, {what}"), 1) for what in
-                                       ("of face.c", "with rig.c and fixed.c")))
+                   ("of face.c", "with rig.c and fixed.c")))
     baked = [other[f"{pair} 32: closed"] for pair in limits]
     yield sentence("Of {} *p, b, m* of flite's voice awb, `labial bake` closes at least {} % at each of these limits",
-                   count(other["stops"]), count(100 * min(baked)))
+                   other["stops"], 100 * min(baked))
 
 
 def arduino(source: Sources) -> Iterator[Sentence]:
-    yield sentence("| the player, with all that it supports | {} bytes |", count(source.bench("player", "uno")))
+    yield sentence("| the player, with all that it supports | {} bytes |", source.bench("player", "uno"))
     yield sentence("| the whole program, without the motion | {} bytes |",
-                   count(source.bench("program without its motion", "uno")))
+                   source.bench("program without its motion", "uno"))
 
 
 def experiments(source: Sources) -> Iterator[Sentence]:
     """docs/experiments.md: what is measured anew; all else there was measured once."""
     found = source.record("closures")
     yield sentence("a jaw of 500 us rests {} us above it in the median *p, b, m* of eight voices, and is within 10 us "
-                   "in {} %.", count(found["short"]), count(found["reach"]))
+                   "in {} %.", found["short"], found["reach"])
     yield sentence("Openings are at most {} FAP units in {} *p, b, m*; in 95 % of {} *f, v* at least {}.",
-                   *(count(found[name]) for name in ("stops: most", "stops", "f, v", "f, v: 95 %")))
+                   *(found[name] for name in ("stops: most", "stops", "f, v", "f, v: 95 %")))
 
 
 def laughing(source: Sources) -> Iterator[Sentence]:
@@ -399,7 +387,7 @@ def laughing(source: Sources) -> Iterator[Sentence]:
                    *(figure for pair in zip(cells("least"), cells("most")) for figure in pair))
     yield row("largest FAP 3 (jaw), mean", *cells("jaw"))
     yield row("FAP 53 (corner), mean of all frames", *cells("corner"))
-    yield sentence("Speech opens up to {}.", count(found["speech"]))
+    yield sentence("Speech opens up to {}.", found["speech"])
 
 
 def results(source: Sources) -> Iterator[Sentence]:
@@ -416,21 +404,16 @@ def results(source: Sources) -> Iterator[Sentence]:
                            ((RANDOM, DIFF), (RANDOM, OTHER), (UNSEEN, OTHER)))
     moves = [number(line["amplitude"]) for made, line in other.items() if made not in ("human", MEAN, FLOAT, DEVICE)]
     yield sentence("It moves wider than any other method ({} of human; others {} to {})",
-                   share(number(other[DEVICE]["amplitude"])), share(min(moves)), share(max(moves)))
-    yield sentence("at least as evenly as people do (jitter {}, of which {} comes from the device's whole FAP units)",
-                   share(number(other[DEVICE]["jitter"])),
+                   _cell(other[DEVICE]["amplitude"]), share(min(moves)), share(max(moves)))
+    yield sentence("at least as evenly as people do (jitter {}, of which {}", _cell(other[DEVICE]["jitter"]),
                    share(number(other[DEVICE]["jitter"]) - number(other[FLOAT]["jitter"])))
-    yield sentence("its motion changes as people's does (seam {}, people {})",
-                   *(decimal(number(other[who]["seam, mean"]), 2) for who in (DEVICE, "human")))
-    yield sentence("A lip-reader trained on people reads {} of the words",
-                   share(number(other[DEVICE]["with residual"])))
-    yield sentence("the readability of unseen letters ({}, people {})", share(number(unseen[DEVICE]["readability"])),
-                   share(number(unseen["human"]["readability"])))
+    yield sentence("(seam {}, people {})", *(decimal(number(other[who]["seam, mean"]), 2) for who in (DEVICE, "human")))
+    yield sentence("A lip-reader trained on people reads {} of the", _cell(other[DEVICE]["with residual"]))
+    yield sentence("({}, people {})", _cell(unseen[DEVICE]["readability"]), _cell(unseen["human"]["readability"]))
     yield sentence("its error on known words is {}, that of its own steps under a Gaussian blur {}, and it closes {} "
                    "of p, b, m. With normalised features the error is {}, and {} close.",
-                   *(share(number(diff[made]["mean"]), 4) for made in (PAPER, BLUR)),
-                   share(number(other[PAPER]["closure"])), share(number(diff[NORMALISED]["mean"]), 4),
-                   share(number(other[NORMALISED]["closure"])))
+                   *(_cell(diff[made]["mean"], 4) for made in (PAPER, BLUR)), _cell(other[PAPER]["closure"]),
+                   _cell(diff[NORMALISED]["mean"], 4), _cell(other[NORMALISED]["closure"]))
     yield from _laughter(source.results.table(LAUGHTER, DIFF), source.results.table(LAUGHTER, OTHER))
     for group, method, cells in _real_lips(source, ("opening", "jaw", "upper lip", "lower lip", "corners",
                                                     "mean of five")):
@@ -441,10 +424,10 @@ def _laughter(diff: Table, other: Table) -> Iterator[Sentence]:
     ridge = "ridge, class window + shapes"
 
     def errors(*methods: str) -> List[str]:
-        return [share(number(diff[made]["mean"]), 4) for made in methods]
+        return [_cell(diff[made]["mean"], 4) for made in methods]
 
     def shares(head: str, *methods: str, digits: int = 2) -> List[str]:
-        return [share(number(other[made][head]), digits) for made in methods]
+        return [_cell(other[made][head], digits) for made in methods]
 
     yield sentence("Labial ({}) is ahead of HMM synthesis ({}), Cohen-Massaro dominance ({}), ridge regression ({}), "
                    "linear regression ({}) and the published method ({}), also by its correlation, {} ({}, {} and {} "
@@ -454,7 +437,7 @@ def _laughter(diff: Table, other: Table) -> Iterator[Sentence]:
                    "as the original ({})", *shares("amplitude", DEVICE, HMM), *shares("pulses seen", DEVICE))
     yield sentence("the error of openness ({} against {}), the rise of pulses ({} of the original against {}), jitter "
                    "({} against {}; {} in float64) and seams ({} against {}; the original {}).",
-                   *(share(number(diff[made]["openness"]), 4) for made in (HMM, DEVICE)),
+                   *(_cell(diff[made]["openness"], 4) for made in (HMM, DEVICE)),
                    *shares("rise of pulses", HMM, DEVICE), *shares("jitter", HMM, DEVICE, FLOAT),
                    *shares("seam, mean", HMM, DEVICE, "synthetic original"))
 
@@ -463,7 +446,7 @@ def streams(source: Sources) -> Iterator[Sentence]:
     code = sum(source.bench(f"code -Os: {name}.c", "m4") for name in _VOICE)
     yield sentence("It needs {} KB of RAM for the follower, its stream included, {} bytes of workspace, {} bytes of "
                    "stack, and 16 bytes for each phoneme", _kilobytes(source.bench("labial_voice_t", "m4"), 1),
-                   count(source.bench("speech: workspace", "m4")), count(source.bench("stack -Os: voice.h", "m4")))
+                   source.bench("speech: workspace", "m4"), source.bench("stack -Os: voice.h", "m4"))
     yield sentence("twice as much for a word; {} KB of code (Cortex-M4, `-Os`)", _kilobytes(code, 1))
 
 

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Decimal
 from pathlib import Path
-from typing import Iterable, List, Mapping, Tuple
+from typing import Iterable, List, Mapping, Tuple, Union
 
 #: A figure in a page: a number, with commas between thousands or without a leading zero, or a word such as "fourteen".
 _FIGURE = r"([-+]?\d[\d,]*(?:\.\d+)?|[-+]?\.\d+|\w+)"
@@ -31,14 +31,14 @@ class Sentence:
         return re.compile(r"(?<![\w.])" * self.text.startswith("{}") + _FIGURE.join(parts))
 
 
-def sentence(text: str, *figures: str) -> Sentence:
-    """A sentence; `text` has a `{}` for each of the `figures`."""
-    return Sentence(text, figures)
+def sentence(text: str, *figures: Union[str, float]) -> Sentence:
+    """A sentence; `text` has a `{}` for each of the `figures`, of which numbers are shown whole."""
+    return Sentence(text, tuple(one if isinstance(one, str) else count(one) for one in figures))
 
 
-def row(head: str, *cells: str) -> Sentence:
+def row(head: str, *cells: Union[str, float]) -> Sentence:
     """A row of a table: its first cell, and the figures of all others."""
-    return Sentence(f"| {head} |" + " {} |" * len(cells), cells)
+    return sentence(f"| {head} |" + " {} |" * len(cells), *cells)
 
 
 def count(value: float) -> str:

@@ -8,7 +8,7 @@ import re
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple, Union
 
 from measure.boards import BOARDS, Board, compiler
 from measure.core import Bench, run, tool, version
@@ -64,6 +64,14 @@ def sections(size: str, path: Path) -> Dict[str, int]:
     return dict(zip(names.split()[:3], map(int, numbers.split()[:3])))
 
 
+def sized(size: str, command: Sequence[Union[str, Path]], cwd: Optional[Path] = None) -> Dict[str, int]:
+    """The sections of what a command compiles."""
+    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
+        out = Path(scratch) / "out.o"
+        run([*command, "-o", out], cwd=cwd)
+        return sections(size, out)
+
+
 def library(bench: Bench, board: Board, level: str) -> Path:
     """The folder of the objects of lib/ for a board, each beside its call graph; compiled once."""
     folder = bench.build / "library" / board.preset / level
@@ -81,40 +89,36 @@ def _compile(sources: Path, folder: Path, command: Tuple[str, ...]) -> None:
 
 def measure(bench: Bench, board: Board) -> None:
     """Code of every file at each level, of those that play, of all, of the compiler's helpers; tables, RAM."""
-    size = f"{board.prefix}size"
-    tool_version = version(compiler(board))
+    size, tool_version = f"{board.prefix}size", version(compiler(board))
+    variables = 0
+    for level in LEVELS:
+        text: Dict[str, int] = {}
+        command, folder = compile_command(bench, board, level), library(bench, board, level)
+        for path in sorted((bench.source / "lib").glob("*.c")):
+            found = sections(size, folder / f"{path.stem}.o")
+            variables += found["data"] + found["bss"]
+            text[path.stem] = found["text"]
+            bench.add(board.preset, f"code {level}: {path.name}", found["text"], "bytes",
+                      [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
+        shown = [*command, "lib/*.c", "&&", size, "*.o"]
+        core = [f"{stem}.o" for stem in CORE]
+        for figure, value, what in (
+            ("total", sum(text[stem] for stem in CORE), ["#", *core]), ("all of lib", sum(text.values()), []),
+            ("compiler's helpers", _helpers(board, [folder / name for name in core]),
+             ["#", "members", "of", "libgcc.a", "that", "these", "link"])):
+            bench.add(board.preset, f"code {level}: {figure}", value, "bytes", [*shown, *what], tool_version)
+    command = compile_command(bench, board, "-Os")
+    tables = {f"{model}: {kind}": f"models/{stem}{end}.c" for model, stem in MODELS.items()
+              for kind, end in (("model", ""), ("names", "_names"))}
+    tables["words: tables"] = "words/words_en.c"
     with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
-        out = Path(scratch) / "out.o"
-        variables = 0
-        for level in LEVELS:
-            text: Dict[str, int] = {}
-            command = compile_command(bench, board, level)
-            folder = library(bench, board, level)
-            for path in sorted((bench.source / "lib").glob("*.c")):
-                found = sections(size, folder / f"{path.stem}.o")
-                variables += found["data"] + found["bss"]
-                text[path.stem] = found["text"]
-                bench.add(board.preset, f"code {level}: {path.name}", found["text"], "bytes",
-                          [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
-            shown = [*command, "lib/*.c", "&&", size, "*.o"]
-            bench.add(board.preset, f"code {level}: total", sum(text[stem] for stem in CORE), "bytes",
-                      [*shown, "#", *(f"{stem}.o" for stem in CORE)], tool_version)
-            bench.add(board.preset, f"code {level}: all of lib", sum(text.values()), "bytes", shown, tool_version)
-            objects = [folder / f"{stem}.o" for stem in CORE]
-            bench.add(board.preset, f"code {level}: compiler's helpers", _helpers(bench, board, objects), "bytes",
-                      [*shown, "#", "members", "of", "libgcc.a", "that", "these", "link"], tool_version)
-        command = compile_command(bench, board, "-Os")
         _face(bench, board, command, Path(scratch), tool_version)
-        tables = {f"{model}: {kind}": f"models/{stem}{end}.c" for model, stem in MODELS.items()
-                  for kind, end in (("model", ""), ("names", "_names"))}
-        tables["words: tables"] = "words/words_en.c"
         for figure, name in tables.items():
             path = bench.source / "lib" / name
-            run([*command, path, "-o", out])
-            found = sections(size, out)
+            found = sized(size, [*command, path])
             variables += found["data"] + found["bss"]
-            bench.add(board.preset, figure, found["text"], "bytes",
-                      [*command, path, "&&", size, f"{path.stem}.o"], tool_version)
+            bench.add(board.preset, figure, found["text"], "bytes", [*command, path, "&&", size, f"{path.stem}.o"],
+                      tool_version)
         bench.add(board.preset, ".data and .bss of library and models", variables, "bytes",
                   [*command, "lib/*.c", "lib/models/*.c", "lib/words/*.c", "&&", size, "*.o"], tool_version)
         _ram(bench, board, command, Path(scratch), tool_version)
@@ -129,25 +133,22 @@ def _face(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ve
         objects.append(scratch / f"face_part_{stem}.o")
         run([*command, "-ffunction-sections", bench.source / "lib" / f"{stem}.c", "-o", objects[-1]])
         if figure:
-            run([*link, *objects, "-o", scratch / "face_linked.o"])
-            found = sections(f"{board.prefix}size", scratch / "face_linked.o")
-            bench.add(board.preset, f"code -Os: {figure}", found["text"], "bytes",
-                      [*command, "-ffunction-sections", "lib/*.c", "&&", *link, "*.o"], tool_version)
+            bench.add(board.preset, f"code -Os: {figure}", sized(f"{board.prefix}size", [*link, *objects])["text"],
+                      "bytes", [*command, "-ffunction-sections", "lib/*.c", "&&", *link, "*.o"], tool_version)
 
 
-def _helpers(bench: Bench, board: Board, objects: List[Path]) -> int:
+def _helpers(board: Board, objects: List[Path]) -> int:
     """Bytes that `objects` link from the compiler's library, such as division; raises RuntimeError if they need more
     than that and the functions that every C compiler relies on."""
-    prefix, linked = board.prefix, objects[0].with_name("linked.o")
-    flags = list(board.options)
-    archive = run([compiler(board), *flags, "-print-libgcc-file-name"]).stdout.decode().strip()
-    link_map = run([compiler(board), *flags, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
-    undefined = run([f"{prefix}nm", "-u", linked]).stdout.decode()
+    command, linked = [compiler(board), *board.options], objects[0].with_name("linked.o")
+    archive = run([*command, "-print-libgcc-file-name"]).stdout.decode().strip()
+    link_map = run([*command, "-nostdlib", "-r", "-Wl,-M", *objects, archive, "-o", linked])
+    undefined = run([f"{board.prefix}nm", "-u", linked]).stdout.decode()
     unknown = set(re.findall(r"U (\w+)", undefined)) - {"memcpy", "memmove", "memset"}
     if unknown:
         raise RuntimeError(f"{board.core}: {', '.join(CORE)} call {', '.join(sorted(unknown))} of other files of lib/")
     members = set(re.findall(r"libgcc\.a\(([^)]+)\)", link_map.stdout.decode()))
-    lines = run([f"{prefix}size", archive]).stdout.decode().splitlines()[1:]
+    lines = run([f"{board.prefix}size", archive]).stdout.decode().splitlines()[1:]
     return sum(int(line.split()[0]) for line in lines if line.split()[5] in members)
 
 
@@ -155,65 +156,53 @@ def _ram(bench: Bench, board: Board, command: List[str], scratch: Path, tool_ver
     source, out = scratch / "ram.c", scratch / "ram.o"
     headers = [name[len("labial_") : -len("_t")] for name in STATES if name != BESIDE]
     lines = [f'#include "{stem}.h"' for stem in (*MODELS.values(), *(f"labial/{name}" for name in headers))]
-    lines.append("char stream[sizeof(labial_t)];")
     lines += [f"char {model}[{stem.upper()}_WORKSPACE_SIZE];" for model, stem in MODELS.items()]
     same = f"{MODELS['speech'].upper()}_WORKSPACE_SIZE == LABIAL_WORKSPACE_SIZE({STRIDE}, {COUNT})"
     lines.append(f"typedef char sizes_are_those_of_the_voice[{same} ? 1 : -1];")
     lines += [f"#define STRIDE {STRIDE}", f"#define COUNT {COUNT}"]
-    parts = {**PARTS, **STATES}
+    parts = {"labial_t": "sizeof(labial_t)", **PARTS, **STATES}
     lines += [f"char part_{i}[{size}];" for i, size in enumerate(parts.values())]
     source.write_text("\n".join(lines) + "\n", encoding="ascii")
-    command = [*command, f"-I{bench.source / 'lib' / 'models'}", str(source)]
-    run([*command, "-o", out])
+    run([*command, f"-I{bench.source / 'lib' / 'models'}", source, "-o", out])
     listing = run([f"{board.prefix}nm", "-S", out]).stdout.decode().splitlines()
     found = {line.split()[-1]: int(line.split()[1], 16) for line in listing}
-    shown = [f"{board.prefix}nm", "-S", "of", "an", "array", "of", "that", "size"]
-    bench.add(board.preset, "labial_t", found["stream"], "bytes", shown, tool_version)
-    for i, part in enumerate(parts):
-        bench.add(board.preset, part, found[f"part_{i}"], "bytes", shown, tool_version)
+    sizes = {part: found[f"part_{i}"] for i, part in enumerate(parts)}
     for model in MODELS:
-        bench.add(board.preset, f"{model}: workspace", found[model], "bytes", shown, tool_version)
-        bench.add(board.preset, f"{model}: workspace and labial_t", found[model] + found["stream"], "bytes", shown,
-                  tool_version)
+        sizes[f"{model}: workspace"] = found[model]
+        sizes[f"{model}: workspace and labial_t"] = found[model] + sizes["labial_t"]
+    for figure, value in sizes.items():
+        bench.add(board.preset, figure, value, "bytes",
+                  [f"{board.prefix}nm", "-S", "of", "an", "array", "of", "that", "size"], tool_version)
 
 
 def esp32_hear(bench: Bench) -> None:
     """examples/esp32-hear/lips.c for a Cortex-M4, whose RAM has the stream and its workspace in it."""
     (board,) = (one for one in BOARDS if one.preset == "m4")
-    path = bench.source / "examples" / "esp32-hear" / "lips.c"
+    size, path = f"{board.prefix}size", bench.source / "examples" / "esp32-hear" / "lips.c"
     command = [*compile_command(bench, board, "-Os"), "-Ilib/models", path]
-    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
-        out = Path(scratch) / "lips.o"
-        run([*command, "-o", out], cwd=bench.source)
-        found = sections(f"{board.prefix}size", out)
-    shown = [*command, "&&", f"{board.prefix}size", "lips.o"]
+    found = sized(size, command, bench.source)
     for figure, value in (("flash", found["text"]), ("RAM", found["data"] + found["bss"])):
-        bench.add(board.preset, f"esp32-hear, lips.c: {figure}", value, "bytes", shown, version(f"{board.prefix}gcc"))
+        bench.add(board.preset, f"esp32-hear, lips.c: {figure}", value, "bytes", [*command, "&&", size, "lips.o"],
+                  version(f"{board.prefix}gcc"))
 
 
 def uno(bench: Bench) -> None:
     """examples/uno without its motion, and the player of baked motion: a program with it less one without."""
-    what = "The program for an Arduino Uno"
-    compiler, size = (tool(name, "gcc-avr", what) for name in ("avr-gcc", "avr-size"))
+    compiler, size = (tool(name, "gcc-avr", "The program for an Arduino Uno") for name in ("avr-gcc", "avr-size"))
     talk = bench.source / "examples" / "talk"
     command = [compiler, "-mmcu=atmega328p", "-Os", "-std=gnu99", "-ffunction-sections", "-Wl,--gc-sections",
                f"-I{talk}", f"-I{bench.source / 'export' / 'labial' / 'bake'}"]
-    found = {}
     jaw, player = bench.source / "examples" / "uno" / "main.c", bench.source / "tests" / "device" / "uno_player.c"
-    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
-        for name, source, option in (("program", jaw, []), ("with", player, ["-DPLAYER"]), ("without", player, [])):
-            out = Path(scratch) / f"{name}.elf"
-            run([*command, *option, source, "-o", out])
-            found[name] = sections(size, out)
     motion = re.search(r"const uint8_t (\w+)\[(\d+)\]", (talk / "talk.h").read_text(encoding="utf-8"))
     if not motion:
         raise RuntimeError(f"{talk / 'talk.h'}: no array")
 
-    def bytes_of(name: str) -> int:
-        return found[name]["text"] + found[name]["data"]
+    def bytes_of(*sources: Union[str, Path]) -> int:
+        found = sized(size, [*command, *sources])
+        return found["text"] + found["data"]
 
-    for figure, value, path in (("program without its motion", bytes_of("program") - int(motion[2]), jaw),
-                                ("player", bytes_of("with") - bytes_of("without"), player)):
+    for figure, value, path in (("program without its motion", bytes_of(jaw) - int(motion[2]), jaw),
+                                ("player", bytes_of("-DPLAYER", player) - bytes_of(player), player)):
         bench.add("uno", figure, value, "bytes", [*command, path, "&&", size, "a.out"], version(compiler))
 
 
@@ -227,7 +216,5 @@ def uno_beside(bench: Bench) -> None:
         ram.write_text(f'#include "labial/beside.h"\nchar ram[{STATES[BESIDE]}] = {{ 1 }};\n', encoding="ascii")
         for figure, path, kind in (("code -Os: beside.c", bench.source / "lib" / "beside.c", "text"),
                                    (BESIDE, ram, "data")):
-            out = Path(scratch) / f"{path.stem}.o"
-            run([*command, path, "-o", out])
-            shown = [*command, ram.name if path == ram else path, "&&", size, out.name]
-            bench.add("uno", figure, sections(size, out)[kind], "bytes", shown, version(compiler))
+            shown = [*command, ram.name if path == ram else path, "&&", size, f"{path.stem}.o"]
+            bench.add("uno", figure, sized(size, [*command, path])[kind], "bytes", shown, version(compiler))
