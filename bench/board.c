@@ -17,14 +17,6 @@ static const bench_input_t others[2] = { BENCH_SPEECH, BENCH_LAUGHTER };
 static labial_t stream;
 static uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4];
 
-static void report(const char *name, uint32_t number)
-{
-    board_print(name);
-    board_put(' ');
-    board_print_unsigned(number);
-    board_put('\n');
-}
-
 int main(void)
 {
     uint32_t frames = 0, ticks = 0, sum = 0, pushed = 0;
@@ -62,13 +54,13 @@ int main(void)
     if (result != LABIAL_DONE)
         return 3;
 
-    report("frames", frames);
-    report("ticks", ticks);
-    report("tick_instructions", ticking);
-    report("tick_worst", worst);
-    report("push_instructions", pushing);
-    report("init_instructions", initial);
-    report("stack", deepest);
-    report("checksum", sum);
+    board_print_within("frames ", frames, "\n");
+    board_print_within("ticks ", ticks, "\n");
+    board_print_within("tick_instructions ", ticking, "\n");
+    board_print_within("tick_worst ", worst, "\n");
+    board_print_within("push_instructions ", pushing, "\n");
+    board_print_within("init_instructions ", initial, "\n");
+    board_print_within("stack ", deepest, "\n");
+    board_print_within("checksum ", sum, "\n");
     return 0;
 }

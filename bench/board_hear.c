@@ -50,14 +50,6 @@ static void make_sound(uint32_t number)
     }
 }
 
-static void report(const char *name, uint32_t number)
-{
-    board_print(name);
-    board_put(' ');
-    board_print_unsigned(number);
-    board_put('\n');
-}
-
 int main(void)
 {
     uint32_t number, initial, pushing = 0, worst = 0, ending, deepest;
@@ -83,13 +75,13 @@ int main(void)
     ending = board_count();
     deepest = board_stack_depth();
 
-    report("frames", frames);
-    report("push_instructions", pushing);
-    report("push_worst", worst);
-    report("init_instructions", initial);
-    report("end_instructions", ending);
-    report("stack", deepest);
-    report("ram", (uint32_t)sizeof hear + labial_hear_workspace_size(&BENCH_HEARING));
-    report("checksum", checksum);
+    board_print_within("frames ", frames, "\n");
+    board_print_within("push_instructions ", pushing, "\n");
+    board_print_within("push_worst ", worst, "\n");
+    board_print_within("init_instructions ", initial, "\n");
+    board_print_within("end_instructions ", ending, "\n");
+    board_print_within("stack ", deepest, "\n");
+    board_print_within("ram ", (uint32_t)sizeof hear + labial_hear_workspace_size(&BENCH_HEARING), "\n");
+    board_print_within("checksum ", checksum, "\n");
     return 0;
 }

@@ -18,10 +18,7 @@ int main(void)
         bench_unit_solve(&unit, &speech_en, k, motion);
         instructions += board_count();
     }
-    board_print("instructions ");
-    board_print_unsigned(instructions);
-    board_print("\nframes ");
-    board_print_unsigned(BENCH_CHANNELS * BENCH_UNIT);
-    board_put('\n');
+    board_print_within("instructions ", instructions, "\n");
+    board_print_within("frames ", BENCH_CHANNELS * BENCH_UNIT, "\n");
     return 0;
 }

@@ -133,23 +133,18 @@ static void count(ticks_t *ticks, uint32_t taken)
     ticks->largest = taken > ticks->largest ? taken : ticks->largest;
 }
 
-static void print(const char *name, const char *what, uint32_t number)
-{
-    board_print(name);
-    board_print(what);
-    board_print_unsigned(number);
-    board_put('\n');
-}
-
 static void report(const char *name, const ticks_t *ticks)
 {
     uint32_t above = ticks->ticks;
     unsigned step = 0;
     for (; step < STEPS && above > ticks->ticks / 100u; step++)
         above -= ticks->counts[step];
-    print(name, "_mean ", ticks->total / ticks->ticks);
-    print(name, "_99th ", step * STEP);
-    print(name, "_largest ", ticks->largest);
+    board_print(name);
+    board_print_within("_mean ", ticks->total / ticks->ticks, "\n");
+    board_print(name);
+    board_print_within("_99th ", step * STEP, "\n");
+    board_print(name);
+    board_print_within("_largest ", ticks->largest, "\n");
 }
 
 static int play(const source_t *source)
@@ -197,6 +192,6 @@ int main(void)
         if (play(&sources[i]))
             return 1;
     report("all", &all);
-    print("checksum", " ", sum);
+    board_print_within("checksum ", sum, "\n");
     return 0;
 }

@@ -15,14 +15,6 @@ static labial_words_t stream;
 static labial_word_t word;
 static uint32_t phonemes, checksum;
 
-static void report(const char *name, uint32_t number)
-{
-    board_print(name);
-    board_put(' ');
-    board_print_unsigned(number);
-    board_put('\n');
-}
-
 /* Takes all phonemes that there are. */
 static void take(void)
 {
@@ -66,13 +58,13 @@ int main(void)
     take();
     deepest = board_stack_depth();
 
-    report("words", number);
-    report("phonemes", phonemes);
-    report("read_instructions", reading);
-    report("read_worst", reading_worst);
-    report("say_instructions", saying);
-    report("say_worst", saying_worst);
-    report("stack", deepest);
-    report("checksum", checksum);
+    board_print_within("words ", number, "\n");
+    board_print_within("phonemes ", phonemes, "\n");
+    board_print_within("read_instructions ", reading, "\n");
+    board_print_within("read_worst ", reading_worst, "\n");
+    board_print_within("say_instructions ", saying, "\n");
+    board_print_within("say_worst ", saying_worst, "\n");
+    board_print_within("stack ", deepest, "\n");
+    board_print_within("checksum ", checksum, "\n");
     return 0;
 }

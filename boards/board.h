@@ -36,6 +36,9 @@ void board_print_unsigned(uint32_t number);
 void board_print_signed(int32_t number);
 void board_print_hex(uint32_t number); /* eight digits */
 
+/* A number between two texts. */
+void board_print_within(const char *before, uint32_t number, const char *behind);
+
 /* Ends the image at once; main() returning a status does the same. */
 void board_exit(int status);
 

@@ -30,6 +30,13 @@ void board_print_signed(int32_t number)
     board_print_unsigned(number < 0 ? 0u - (uint32_t)number : (uint32_t)number);
 }
 
+void board_print_within(const char *before, uint32_t number, const char *behind)
+{
+    board_print(before);
+    board_print_unsigned(number);
+    board_print(behind);
+}
+
 void board_print_hex(uint32_t number)
 {
     for (int shift = 28; shift >= 0; shift -= 4)

@@ -75,18 +75,6 @@ static void compare(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNE
     }
 }
 
-static void print_difference(const comparison_t *of)
-{
-    board_print(", frame ");
-    board_print_unsigned(of->frame);
-    board_print(", channel ");
-    board_print_unsigned(of->channel);
-    board_print(" is ");
-    board_print_signed(of->found);
-    board_print(", not ");
-    board_print_signed(of->wanted);
-}
-
 static int passes(const conformance_stream_t *script, conformance_feed_t feed, place_t place)
 {
     comparison_t comparison = { { 0, 0 }, place, script->frames, 0, 0, 0, 0, 0 };
@@ -96,18 +84,19 @@ static int passes(const conformance_stream_t *script, conformance_feed_t feed, p
     board_print(script->name);
     board_print(", ");
     board_print(conformance_feed_names[feed]);
-    board_print(": ");
-    board_print_unsigned(digest.frames);
-    board_print(" frames, ");
+    board_print_within(": ", digest.frames, " frames, ");
     board_print_hex(digest.crc);
     if (!same) {
-        board_print(", not ");
-        board_print_unsigned(script->frames);
-        board_print(" frames, ");
+        board_print_within(", not ", script->frames, " frames, ");
         board_print_hex(script->digest);
     }
-    if (comparison.differs)
-        print_difference(&comparison);
+    if (comparison.differs) {
+        board_print_within(", frame ", comparison.frame, "");
+        board_print_within(", channel ", comparison.channel, " is ");
+        board_print_signed(comparison.found);
+        board_print(", not ");
+        board_print_signed(comparison.wanted);
+    }
     if (complaint) {
         board_print(", ");
         board_print(complaint);
@@ -127,9 +116,7 @@ int main(void)
         for (frame = 0; sizeof runs > sizeof runs[0] && frame < conformance_streams[i].frames; frame++)
             (void)next(&place);
     }
-    board_print_unsigned(conformance_stream_count);
-    board_print(" streams, ");
-    board_print_unsigned(failures);
-    board_print(" failures\n");
+    board_print_within("", conformance_stream_count, " streams, ");
+    board_print_within("", failures, " failures\n");
     return failures || conformance_stream_count == 0 ? 1 : 0;
 }

@@ -15,11 +15,8 @@ static uint32_t printed, alike;
 
 static void print_alike(void)
 {
-    if (alike) {
-        board_print("and ");
-        board_print_unsigned(alike);
-        board_put('\n');
-    }
+    if (alike)
+        board_print_within("and ", alike, "\n");
     alike = 0;
 }
 

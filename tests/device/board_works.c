@@ -45,9 +45,7 @@ static void check_counter(void)
     const uint32_t one = count_loop(1), round = count_loop(2) - one, many = count_loop(100001);
     if (many == 0) /* the host has no counter */
         return;
-    board_print("one round of a loop: ");
-    board_print_unsigned(round);
-    board_print(" instructions\n");
+    board_print_within("one round of a loop: ", round, " instructions\n");
     expect(round >= 2 && round <= 6, "a round of the loop takes two to six instructions");
     expect(many == one + 100000u * round, "100,000 more rounds take exactly as many times what one takes");
     expect(count_loop(100001) == many, "the same loop counts the same again");
@@ -70,9 +68,7 @@ static void check_stack(void)
         return;
     expect(shallow >= 16 && shallow < 128, "a call that touches 16 bytes is seen as such");
     expect(deep >= 512 && deep < 640, "a call that touches 512 bytes is seen as such");
-    board_print("stack never used: ");
-    board_print_unsigned(board_stack_left());
-    board_print(" bytes\n");
+    board_print_within("stack never used: ", board_stack_left(), " bytes\n");
 }
 
 int main(void)

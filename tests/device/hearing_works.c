@@ -109,9 +109,7 @@ int main(void)
     }
     for (unsigned row = 0; row < sizeof hears / sizeof hears[0]; row++)
         if (!is_heard(row)) {
-            board_print("sound ");
-            board_print_unsigned(row);
-            board_print(": FAILED\n");
+            board_print_within("sound ", row, ": FAILED\n");
             wrong++;
         }
     return wrong > 0;

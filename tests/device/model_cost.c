@@ -152,11 +152,8 @@ static void judge(const char *name, const labial_model_t *played, uint32_t recor
 {
     const uint32_t said = labial_model_cost(played), worst = counted(played);
     board_print(name);
-    board_print(": ");
-    board_print_unsigned(said);
-    board_print(" said, ");
-    board_print_unsigned(worst);
-    board_print(" counted\n");
+    board_print_within(": ", said, " said, ");
+    board_print_within("", worst, " counted\n");
     expect(labial_model_check(played) == LABIAL_OK, "the model passes the check");
     expect(worst <= said && recorded <= said, "no tick costs more than is said");
     expect(recorded > said / 100u * LEAST_SHARE, "what is said is not far above what a Cortex-M0 takes");

@@ -26,10 +26,8 @@ static int is(uint32_t expected)
     const uint32_t found = ~crc;
     seed = 1;
     crc = CHECKSUM_BEGIN;
-    if (found != expected) {
-        board_print_unsigned(found);
-        board_print(": FAILED\n");
-    }
+    if (found != expected)
+        board_print_within("", found, ": FAILED\n");
     return found == expected;
 }
 

@@ -114,14 +114,10 @@ static void stack_is_small(void)
     TEST_ASSERT_NULL(conformance_play(script, CONFORMANCE_FILL, &device_memory.stream, device_memory.workspace,
                                       DEVICE_WORKSPACE, ignore, NULL));
     uint32_t depth = board_stack_depth();
-    board_print("stack: ");
-    board_print_unsigned(depth);
-    board_print(" bytes, ");
+    board_print_within("stack: ", depth, " bytes, ");
     TEST_ASSERT_TRUE(depth <= STACK_LIMIT);
     depth = depth_of_ticks();
-    board_print("of a tick alone: ");
-    board_print_unsigned(depth);
-    board_print(" bytes\n");
+    board_print_within("of a tick alone: ", depth, " bytes\n");
     TEST_ASSERT_TRUE(depth <= TICK_STACK_LIMIT);
 }
 
