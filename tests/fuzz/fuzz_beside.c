@@ -4,28 +4,14 @@
  * and a good packet is always accepted. The first two bytes are the outputs and the frames of memory; each call begins
  * with a byte that names it.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fuzz.h"
 #include "labial/beside.h"
 
 enum { FEED, FEED_MENDED, AT, CANCEL };
 
-/* A copy of its own, so that the sanitizer sees its ends. */
-static uint8_t *copy_of(const uint8_t *data, size_t size)
-{
-    uint8_t *copy = (uint8_t *)malloc(size ? size : 1);
-    REQUIRE(copy != NULL);
-    memcpy(copy, data, size);
-    return copy;
-}
-
 static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsigned outputs, int mends)
 {
-    uint8_t *packet = copy_of(data, size);
+    uint8_t *packet = (uint8_t *)copy_of(data, size);
     int result, cancels = 0;
     if (mends && size >= LABIAL_BESIDE_HEAD + outputs) {
         const size_t frames = size / outputs;
@@ -46,19 +32,17 @@ static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsi
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    labial_beside_t *player = (labial_beside_t *)malloc(sizeof *player);
+    labial_beside_t *player = (labial_beside_t *)memory_of(sizeof *player);
     unsigned outputs, frames;
     uint32_t sample = 0, rate;
     uint8_t *memory, *values, *last;
     int moves = 0; /* `last` is known */
-    REQUIRE(player != NULL);
     outputs = size > 2 && data[0] ? data[0] : 1u;
     frames = size > 2 && data[1] ? data[1] : 1u;
     rate = size > 2 ? 1u + data[2] * 1009u : 1u;
-    memory = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(outputs, frames));
-    values = (uint8_t *)malloc(outputs);
-    last = (uint8_t *)malloc(outputs);
-    REQUIRE(memory != NULL && values != NULL && last != NULL);
+    memory = (uint8_t *)memory_of(LABIAL_BESIDE_SIZE(outputs, frames));
+    values = (uint8_t *)memory_of(outputs);
+    last = (uint8_t *)memory_of(outputs);
     memset(player, 0x5a, sizeof *player);
     REQUIRE(labial_beside_init(player, outputs, rate, memory, LABIAL_BESIDE_SIZE(outputs, frames)) == 0);
     for (frames = 0; frames < outputs; frames++)

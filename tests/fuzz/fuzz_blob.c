@@ -6,11 +6,6 @@
  * behind these are reached; or a sound model, one of the suites' or a bundled one, with some of its bytes replaced, which
  * mostly reaches the stream.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fixture.h"
 #include "fuzz.h"
 #include "labial/blob.h"
@@ -77,9 +72,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     size_t length = size ? size - 1 : 0;
     if (size == 0 || length > ROOM)
         return 0;
-    out = (uint8_t *)malloc(ROOM);
-    blob = (labial_blob_t *)malloc(sizeof *blob);
-    REQUIRE(out && blob);
+    out = (uint8_t *)memory_of(ROOM);
+    blob = (labial_blob_t *)memory_of(sizeof *blob);
     memset(blob, 0xee, sizeof *blob);
     if (data[0] % 4 >= 2) {
         length = patch(out, data[0] / 4u, data + 1, length);
@@ -94,9 +88,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             fixture_seal(out, length);
         }
     }
-    exact = (uint8_t *)malloc(length ? length : 1);
-    REQUIRE(exact);
-    memcpy(exact, out, length);
+    exact = (uint8_t *)copy_of(out, length);
     const int result = labial_model_load(blob, exact, length);
     REQUIRE(result == LABIAL_OK || result == LABIAL_ERROR_MODEL || result == LABIAL_ERROR_VERSION);
     if (result == LABIAL_OK) {

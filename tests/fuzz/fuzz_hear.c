@@ -2,11 +2,6 @@
  * fuzz_hear.c - any bytes as sound at any rate, and as calls between blocks in any order: nothing may be written beside
  * the stream or the workspace, frames are numbered without gaps, and as many as the sound has, whatever its blocks.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fuzz.h"
 #include "hear_fixture.h"
 #include "labial/hear.h"
@@ -34,11 +29,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static const uint32_t rates[] = { 8000, 12000, 16000, 22050, 24000, 32000, 44100, 48000 };
     told_t told = { 0, 0 };
-    labial_hear_t *hear = (labial_hear_t *)malloc(sizeof *hear); /* so that the sanitizer sees their ends */
-    void *workspace = malloc(HEAR_FIXTURE_WORKSPACE_SIZE);
+    labial_hear_t *hear = (labial_hear_t *)memory_of(sizeof *hear);
+    void *workspace = memory_of(HEAR_FIXTURE_WORKSPACE_SIZE);
     uint32_t rate, channels, heard = 0, before = 0;
     int result, ended = 0, exact;
-    REQUIRE(hear != NULL && workspace != NULL);
     memset(hear, 0xa5, sizeof *hear);
     memset(workspace, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE);
     if (size < 2)
@@ -85,9 +79,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             int16_t *samples;
             const size_t pair = 2u * channels;
             bytes = (bytes < size ? bytes : size) / pair * pair;
-            samples = (int16_t *)malloc(bytes + 1u);
-            REQUIRE(samples != NULL);
-            memcpy(samples, data, bytes);
+            samples = (int16_t *)copy_of(data, bytes);
             for (i = 0; i <= again; i++) {
                 REQUIRE(labial_hear_push(hear, samples, bytes / pair) == (ended ? LABIAL_ERROR_STATE : LABIAL_OK));
                 heard += ended ? 0 : (uint32_t)(bytes / pair);

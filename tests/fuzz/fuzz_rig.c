@@ -2,30 +2,22 @@
  * fuzz_rig.c - any bytes as a rig, FAPs and last values. No table may make labial_rig_apply() write elsewhere or behave
  * in an undefined way; with one that labial_rig_check() accepts, every value keeps its limits and its slew.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fuzz.h"
 
 #define OUTPUTS 4
 
-/* Of the output's layout up to its curve, which is a pointer. */
 typedef struct {
-    uint8_t outputs[OUTPUTS][offsetof(labial_rig_output_t, curve)];
+    uint8_t outputs[OUTPUTS][OUTPUT_BYTES];
     labial_rig_curve_t curve;
     int32_t values[OUTPUTS], changes[OUTPUTS];
     int16_t visemes[LABIAL_VISEMES];
     uint8_t shares[LABIAL_VISEMES];
-    uint8_t curved; /* which outputs have the curve */
-    uint8_t sound;  /* which outputs have their ranges put right, so that the checks behind the first are
-                    * reached, and whether the curve has */
-} input_t;
+    uint8_t curved, sound; /* of the outputs */
+} head_t;
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    input_t input;
+    head_t input;
     labial_rig_output_t outputs[OUTPUTS];
     labial_rig_t rig;
     if (size < sizeof input)
@@ -33,15 +25,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     memcpy(&input, data, sizeof input);
     data += sizeof input;
     size -= sizeof input;
-    if (input.sound >> OUTPUTS & 1u)
-        mend_curve(&input.curve);
-    for (unsigned i = 0; i < OUTPUTS; i++) {
-        memcpy(&outputs[i], input.outputs[i], sizeof input.outputs[i]);
-        outputs[i].curve = input.curved >> i & 1u ? &input.curve : NULL;
+    make_outputs(outputs, input.outputs, OUTPUTS, &input.curve, input.curved, input.sound);
+    for (unsigned i = 0; i < OUTPUTS; i++)
         outputs[i].visemes = input.curved >> (i + 1u) & 1u ? input.visemes : NULL;
-        if (input.sound >> i & 1u)
-            mend(&outputs[i]);
-    }
     rig.outputs = outputs;
     rig.count = OUTPUTS;
     const int checked = labial_rig_check(&rig);
@@ -50,13 +36,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (size >= 2u * LABIAL_CHANNELS) {
         const size_t left = size / (2u * LABIAL_CHANNELS);
         const uint16_t count = (uint16_t)(left < 40u ? left : 40u);
-        int16_t *frames = (int16_t *)malloc(2u * LABIAL_CHANNELS * count); /* so that the sanitizer sees their ends */
-        int32_t *values = (int32_t *)malloc(sizeof input.values);
-        int32_t *changes = (int32_t *)malloc(sizeof input.changes);
-        REQUIRE(frames != NULL && values != NULL && changes != NULL);
-        memcpy(frames, data, 2u * LABIAL_CHANNELS * count);
-        memcpy(values, input.values, sizeof input.values);
-        memcpy(changes, input.changes, sizeof input.changes);
+        int16_t *frames = (int16_t *)copy_of(data, 2u * LABIAL_CHANNELS * count);
+        int32_t *values = (int32_t *)copy_of(input.values, sizeof input.values);
+        int32_t *changes = (int32_t *)copy_of(input.changes, sizeof input.changes);
         if (input.curved >> OUTPUTS & 1u)
             REQUIRE(labial_rig_apply_visemes(&rig, frames, input.shares, values) == LABIAL_OK);
         else

@@ -7,11 +7,6 @@
  * as long as its phonemes. The first byte chooses between the small models of the suites, which have every kind of
  * table, and the bundled ones; make_seeds.c writes the conformance streams as such bytes.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fixture.h"
 #include "fuzz.h"
 #include "labial/visemes.h"
@@ -27,19 +22,6 @@
 #define TICKS 1000
 
 static fixture_model_t speech, laugh, plain, slow, other_rate;
-
-typedef struct {
-    const uint8_t *data;
-    size_t size;
-} bytes_t;
-
-static uint32_t take(bytes_t *bytes, unsigned count)
-{
-    uint32_t value = 0;
-    for (; count > 0 && bytes->size > 0; count--, bytes->size--)
-        value = value << 8 | *bytes->data++;
-    return value;
-}
 
 /* What the stream must have become. */
 typedef struct {
@@ -176,31 +158,29 @@ static void restart(watch_t *watch)
 /* The structure may lie elsewhere after every call. */
 static void move(watch_t *watch)
 {
-    labial_t *place = (labial_t *)malloc(sizeof *place);
-    REQUIRE(place);
-    memcpy(place, watch->stream, sizeof *place);
+    labial_t *place = (labial_t *)copy_of(watch->stream, sizeof *place);
     free(watch->stream);
     watch->stream = place;
 }
 
-static void one_call(watch_t *watch, bytes_t *bytes)
+static void one_call(watch_t *watch, input_t *bytes)
 {
-    const unsigned call = take(bytes, 1);
+    const unsigned call = number(bytes, 1);
     unsigned i;
     switch (call % 16) {
     case 0:
     case 1:
     case 2:
     case 3: /* an ordinary phoneme */
-        push(watch, ((call >> 4) + call % 4 * 16) % watch->phonemes, take(bytes, 1) * 2);
+        push(watch, ((call >> 4) + call % 4 * 16) % watch->phonemes, number(bytes, 1) * 2);
         break;
     case 4: /* a long one */
-        i = take(bytes, 1);
-        push(watch, i % watch->phonemes, take(bytes, 2));
+        i = number(bytes, 1);
+        push(watch, i % watch->phonemes, number(bytes, 2));
         break;
     case 5: /* any numbers */
-        i = take(bytes, (call >> 4) % 5);
-        push(watch, i, take(bytes, 4));
+        i = number(bytes, (call >> 4) % 5);
+        push(watch, i, number(bytes, 4));
         break;
     case 6: /* many short ones */
         for (i = call >> 2; i > 0; i--)
@@ -211,11 +191,11 @@ static void one_call(watch_t *watch, bytes_t *bytes)
         (void)tick(watch);
         break;
     case 9:
-        for (i = take(bytes, 1); i > 0 && watch->ticks < TICKS; i--)
+        for (i = number(bytes, 1); i > 0 && watch->ticks < TICKS; i--)
             (void)tick(watch);
         break;
     case 10: /* a pause */
-        push(watch, watch->silence, take(bytes, 2));
+        push(watch, watch->silence, number(bytes, 2));
         break;
     case 11: /* phonemes of one frame, of both models in turn */
         for (i = call >> 4; i > 0; i--) {
@@ -238,12 +218,12 @@ static void one_call(watch_t *watch, bytes_t *bytes)
         break;
     case 14:
         if (call & 128) {
-            REQUIRE(labial_cancel(watch->stream, take(bytes, (call >> 4) % 8 / 2)) == LABIAL_OK);
+            REQUIRE(labial_cancel(watch->stream, number(bytes, (call >> 4) % 8 / 2)) == LABIAL_OK);
             watch->ended = watch->cancelled = watch->was_cancelled = 1;
             watch->resting = 0;
             watch->done = 0;
         } else {
-            REQUIRE(labial_articulation(watch->stream, take(bytes, 1 + (call >> 4) % 4)) == LABIAL_OK);
+            REQUIRE(labial_articulation(watch->stream, number(bytes, 1 + (call >> 4) % 4)) == LABIAL_OK);
         }
         break;
     default:
@@ -288,20 +268,17 @@ static void choose_models(watch_t *watch, unsigned choice)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    bytes_t bytes;
+    input_t bytes = { data, size };
     watch_t watch = { 0 };
     void *workspace;
     if (speech.model.format == 0)
         make_models();
-    bytes.data = data;
-    bytes.size = size;
-    choose_models(&watch, take(&bytes, 1));
-    workspace = malloc(watch.room);
-    watch.stream = (labial_t *)malloc(sizeof *watch.stream);
-    REQUIRE(workspace && watch.stream);
+    choose_models(&watch, number(&bytes, 1));
+    workspace = memory_of(watch.room);
+    watch.stream = (labial_t *)memory_of(sizeof *watch.stream);
     REQUIRE(labial_init(watch.stream, watch.first, workspace, watch.room, on_frame, &watch) == LABIAL_OK);
     move(&watch);
-    for (unsigned calls = 0; bytes.size > 0 && calls < 2000; calls++)
+    for (unsigned calls = 0; bytes.left > 0 && calls < 2000; calls++)
         one_call(&watch, &bytes);
 
     /* The rest is played, unless it lasts long. */
@@ -326,10 +303,8 @@ int main(void)
     fixture_random_t random = { 1 };
     for (unsigned i = 0; i < INPUTS; i++) {
         const size_t size = 1u + fixture_below(&random, LONGEST);
-        uint8_t *const bytes = (uint8_t *)malloc(size); /* so that reading beyond them is seen */
-        size_t at;
-        REQUIRE(bytes);
-        for (at = 0; at < size; at++)
+        uint8_t *const bytes = (uint8_t *)memory_of(size);
+        for (size_t at = 0; at < size; at++)
             bytes[at] = (uint8_t)fixture_random(&random);
         REQUIRE(LLVMFuzzerTestOneInput(bytes, size) == 0);
         free(bytes);

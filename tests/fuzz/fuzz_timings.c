@@ -5,11 +5,6 @@
  * have an intensity in range, an error has a message and a line and is the last that happens, and the text gives the same
  * timings whole as byte by byte. Labels are looked up in the names of the speech model.
  */
-#include <stddef.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fuzz.h"
 #include "labial/labial.h"
 #include "labial/laugh.h"
@@ -41,12 +36,11 @@ static void check(const labial_timing_t *timing, uint64_t before, size_t size, s
 static uint64_t parse(const uint8_t *data, size_t size, labial_timings_format_t format, const char *tier,
                       uint32_t number, size_t piece)
 {
-    labial_timings_t *timings = (labial_timings_t *)malloc(sizeof *timings);
+    labial_timings_t *timings = (labial_timings_t *)memory_of(sizeof *timings);
     labial_timing_t timing;
     uint64_t sum = 0, before = 0;
     size_t used;
     int result = LABIAL_STARVED, readings = 0;
-    REQUIRE(timings);
     labial_timings_init(timings, format);
     REQUIRE(labial_timings_tier(timings, tier, number) == LABIAL_OK);
     while (result == LABIAL_STARVED) {

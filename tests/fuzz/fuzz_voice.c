@@ -4,25 +4,15 @@
  */
 #include "fuzz.h"
 
-#include <string.h>
-
 #include "labial/voice.h"
 #include "speech_en.h"
 #include "words_en.h"
 
 enum { ITEMS = 16, PLACES = 64 };
 
-typedef struct {
-    const uint8_t *at;
-    size_t left;
-} input_t;
-
 static unsigned byte(input_t *input)
 {
-    if (input->left == 0)
-        return 0;
-    input->left--;
-    return *input->at++;
+    return number(input, 1);
 }
 
 /* A time: short ones, and those that are beyond everything. */
@@ -61,11 +51,9 @@ static void tell(labial_voice_t *voice, input_t *input)
         items[i].end = byte(input) & 1u ? items[i].start + byte(input) * UINT64_C(3000) : some_time(input);
         items[i].phoneme = (uint8_t)size;
         items[i].size = (uint16_t)(size < 128u ? size % 9u : size * 3u);
-        texts[i] = (char *)malloc(items[i].size + 1u);
-        REQUIRE(texts[i] != NULL);
+        texts[i] = (char *)memory_of(items[i].size);
         for (unsigned k = 0; k < items[i].size; k++)
             texts[i][k] = (char)(input->left > 0 ? byte(input) : 'a' + k % 26u);
-        texts[i] = (char *)realloc(texts[i], items[i].size > 0 ? items[i].size : 1);
         items[i].text = size == 255u ? NULL : texts[i];
     }
     result = labial_voice_tell(voice, &message);
@@ -84,10 +72,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static labial_voice_t voice;
     input_t input = { data, size };
     const uint32_t bytes = LABIAL_VOICE_SIZE(3, 8, 1u + byte(&input) % PLACES);
-    uint32_t *const memory = (uint32_t *)malloc(bytes);
+    uint32_t *const memory = (uint32_t *)memory_of(bytes);
     uint64_t clock = 0;
     uint32_t frames = 0;
-    REQUIRE(memory && labial_voice_init(&voice, &speech_en, memory, bytes) == LABIAL_OK);
+    REQUIRE(labial_voice_init(&voice, &speech_en, memory, bytes) == LABIAL_OK);
     REQUIRE(labial_voice_words(&voice, &words_en, NULL) == LABIAL_OK);
     while (input.left > 0 && frames < 400u) {
         const unsigned call = byte(&input);

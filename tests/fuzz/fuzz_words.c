@@ -5,14 +5,12 @@
  */
 #include "fuzz.h"
 
-#include <string.h>
-
 #include "labial/labial.h"
 #include "labial/words.h"
 #include "words_en.h"
 
 /* Takes all phonemes; returns by how much the time went on. */
-static uint64_t take(labial_words_t *words)
+static uint64_t take_all(labial_words_t *words)
 {
     unsigned phoneme;
     uint32_t milliseconds;
@@ -44,12 +42,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     while (size >= 4) {
         const size_t length = data[0] < size - 4 ? data[0] : size - 4;
         const uint32_t lasts = data[2] * 8u, kind = data[3] % 3u;
-        char *text = (char *)malloc(length + 1); /* one byte more, for malloc(0) may be null */
+        char *text = (char *)copy_of(data + 4, length);
         labial_word_t word;
         int result;
-        REQUIRE(text != NULL);
-        memcpy(text, data + 4, length);
-        text = (char *)realloc(text, length > 0 ? length : 1);
         start += data[1] * 8u;
         REQUIRE(labial_words_read_next(&words_en, &own, &context, text, length, &word) == LABIAL_OK);
         REQUIRE(context.dropped == 0 || context.dropped < before);
@@ -67,13 +62,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         }
         REQUIRE(result == LABIAL_OK);
         free(text);
-        sum += take(&words);
+        sum += take_all(&words);
         REQUIRE((int64_t)sum <= (int64_t)start + (offset > 0 ? offset : 0));
         data += 4 + length;
         size -= 4 + length;
     }
     REQUIRE((offset & 1 ? labial_words_cancel(&words) : labial_words_end(&words)) == LABIAL_OK);
-    REQUIRE(take(&words) == 0 || !(offset & 1));
+    REQUIRE(take_all(&words) == 0 || !(offset & 1));
     REQUIRE(labial_words_next(&words, &(unsigned){ 0 }, &(uint32_t){ 0 }) == LABIAL_DONE);
     REQUIRE(labial_words_latency(&words).milliseconds == 0 && labial_words_latency(&words).phonemes == 0);
     REQUIRE(labial_words_restart(&words) == LABIAL_OK);
