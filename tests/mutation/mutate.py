@@ -23,6 +23,7 @@ import itertools
 import json
 import math
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -40,8 +41,8 @@ LIB = ROOT / "lib"
 SURVIVORS = HERE / "survivors.txt"
 #: The mutation score, the share of killed mutants among those that are not equivalent to the library.
 REQUIRED = 0.95
-#: A test hangs if it takes this many times the processor time of the unchanged library.
-PATIENCE, LEAST_SECONDS = 10.0, 5.0
+#: A test hangs if it takes this many times the processor time of the unchanged sources, and at least so long.
+PATIENCE, LEAST_SECONDS = 5.0, 20.0
 #: Builds of the library that every mutant is tried in, in this order: name, definitions.
 BUILDS = {"default": [], "lag": ["-DLABIAL_LAG=40", "-DLABIAL_WINDOW=15"],
           "word": ["-DLABIAL_LAG=9", "-DLABIAL_WINDOW=21"]}
@@ -61,11 +62,11 @@ TABLES = sorted([*(LIB / "models").glob("*.c"), *(LIB / "words").glob("*.c")])
 
 @dataclass
 class Test:
-    """A program on one build of the library, and the seconds of the processor that it takes."""
+    """A command, the build of the library that it is for, and the seconds of the processor that it takes."""
 
     name: str
-    build: str
-    program: Path
+    command: List[str]
+    build: str = ""
     seconds: float = 0.0
 
     def is_of(self, step: str) -> bool:
@@ -78,7 +79,32 @@ def run(command: Sequence[object], **options: object) -> subprocess.CompletedPro
     return subprocess.run([str(part) for part in command], check=True, capture_output=True, **options)  # type: ignore
 
 
-class Bench:
+class Trials:
+    """Runs tests on changed sources in a folder."""
+
+    passing: Tuple[int, ...] = (0,)
+
+    def environment(self, folder: Path) -> Dict[str, str]:
+        raise NotImplementedError
+
+    def fails(self, test: Test, folder: Path, limit: float = 0.0) -> bool:
+        """Whether a test fails, or hangs: `limit` seconds of the processor and more."""
+        limit = limit or max(LEAST_SECONDS, PATIENCE * test.seconds)
+        command = ["sh", "-c", f'ulimit -t {math.ceil(limit)} && exec "$0" "$@"', *test.command]
+        done = subprocess.run(command, env={**os.environ, **self.environment(folder)}, cwd=folder, timeout=limit * 10,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return done.returncode not in self.passing
+
+    def measure(self, test: Test, folder: Path) -> None:
+        """Notes the seconds of a test, which must pass on the sources as they are."""
+        began = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if self.fails(test, folder, 600):
+            raise SystemExit(f"{test.name} fails on the sources as they are")
+        ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+        test.seconds = ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime
+
+
+class Bench(Trials):
     """The library and the tests, built once; mutants replace one object of the library."""
 
     def __init__(self, folder: Path, compiler: str, cmocka: Sequence[str], unity: Path, suites: Sequence[str]) -> None:
@@ -140,20 +166,12 @@ class Bench:
             program = self.folder / build / name
             libraries = [f"-L{self.folder / build}", "-llabial", "-lm"]
             run([self.compiler, *FLAGS, *BUILDS[build], *INCLUDES, *parts, *libraries, "-o", program])
-            test = Test(name, build, program)
-            began = resource.getrusage(resource.RUSAGE_CHILDREN)
-            if self.fails(test, self.folder / build, limit=600):
-                raise SystemExit(f"{name} fails on the library as it is")
-            test.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began.ru_utime
-            self.tests.append(test)
+            self.tests.append(Test(name, [str(program)], build))
+            self.measure(self.tests[-1], self.folder / build)
         self.tests.sort(key=lambda test: test.seconds)
 
-    def fails(self, test: Test, folder: Path, limit: float) -> bool:
-        """Whether a test fails on the library in `folder`, or hangs: `limit` seconds of the processor and more."""
-        environment = {**os.environ, "LD_LIBRARY_PATH": str(folder), "ASAN_OPTIONS": "detect_leaks=0"}
-        command = ["sh", "-c", f'ulimit -t {math.ceil(limit)} && exec "$0"', str(test.program)]
-        done = subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return done.returncode != 0
+    def environment(self, folder: Path) -> Dict[str, str]:
+        return {"LD_LIBRARY_PATH": str(folder), "ASAN_OPTIONS": "detect_leaks=0"}
 
     def verdict(self, mutant: Mutant) -> Optional[str]:
         """What kills a mutant: the name of a test, or `compiler`. Empty for a survivor; None if nothing changed."""
@@ -173,8 +191,7 @@ class Bench:
                 except subprocess.CalledProcessError:
                     return "compiler"
                 for test in sorted(self.tests, key=lambda test: not test.is_of(source.stem)):
-                    limit = max(LEAST_SECONDS, PATIENCE * test.seconds)
-                    if test.build == build and self.fails(test, folder / build, limit):
+                    if test.build == build and self.fails(test, folder / build):
                         return test.name
                 if build == "default" and self.optimised(changed, folder / "code.o") == self.original(mutant.file):
                     return None
@@ -203,7 +220,7 @@ COVERED: Dict[str, Tuple[str, ...]] = {
     "export/labial/runtime/beside.py": ("test_beside.py", "test_esp32_beside.py"),
     "export/labial/runtime/voice.py": ("test_voice.py", "test_voice_sessions.py"),
     "export/labial/corpus/services.py": ("test_services.py", "test_messages.py"),
-    "export/labial/corpus/service_files.py": ("test_services.py", "test_timings.py"),
+    "export/labial/corpus/formats.py": ("test_services.py", "test_timings.py"),
     "export/labial/corpus/messages.py": ("test_messages.py", "test_services.py", "test_voice.py"),
     "export/labial/rig/table.py": ("test_rig.py", "test_outputs.py"),
     "export/labial/rig/description.py": ("test_rig.py", "test_outputs.py"),
@@ -221,24 +238,15 @@ COVERED: Dict[str, Tuple[str, ...]] = {
 }
 #: The packages of npm that have scripts, and the folders of their sources.
 PACKAGES = {"npm": "web", "npm-words": "web/words", "npm-hearing": "web/hearing"}
-#: A test hangs if it takes this many times the processor time of the unchanged sources.
-PATIENCE, LEAST_SECONDS = 5.0, 20.0
 
 
-@dataclass
-class _Call:
-    """A test on a copy of the sources in a folder; `variables` are the environment's."""
-
-    name: str
-    command: List[str]
-    seconds: float = 0.0
-
-
-class Packages:
+class Packages(Trials):
     """The Python package and the npm packages, of which each mutant replaces a file in a copy."""
 
+    passing = (0, 5)  # pytest: no test of this name
+
     def __init__(self, folder: Path, build: Path, files: List[str], suites: List[str]) -> None:
-        self.folder, self.calls = folder, {}  # type: Path, Dict[str, List[_Call]]
+        self.folder, self.calls = folder, {}  # type: Path, Dict[str, List[Test]]
         folder.mkdir(parents=True, exist_ok=True)
         command = ["ctest", "--test-dir", str(build), "--show-only=json-v1"]
         described = subprocess.run(command, check=True, capture_output=True)
@@ -248,7 +256,7 @@ class Packages:
         made = build / "python" / "bin" / "python"  # by a test; else another one that has all that tests need
         self.python = str(made) if made.exists() else sys.executable
         self.npm = Path(self.variables.get("LABIAL_NPM_PACKAGE", ""))
-        known: Dict[str, _Call] = {}
+        known: Dict[str, Test] = {}
         with tempfile.TemporaryDirectory(dir=self.folder) as name:
             for file in files:
                 for test in COVERED[file]:
@@ -269,31 +277,29 @@ class Packages:
                 except SyntaxError:
                     return "compiler"
             self._lay_out(folder, mutant.file)
-            for place in self._places(folder, mutant.file):
-                place.unlink()
-                place.write_text(changed, encoding="utf-8")
-                if place.suffix == ".js" and subprocess.run(["node", "--check", place], capture_output=True).returncode:
-                    return "compiler"
+            place = folder / mutant.file
+            if place.suffix == ".js":
+                package = next(name for name, source in PACKAGES.items() if source == str(Path(mutant.file).parent))
+                place = folder / package / place.name
+            place.unlink()
+            place.write_text(changed, encoding="utf-8")
+            if place.suffix == ".js" and subprocess.run(["node", "--check", place], capture_output=True).returncode:
+                return "compiler"
             for call in self.calls[mutant.file]:
-                if self._fails(call, folder, max(LEAST_SECONDS, PATIENCE * call.seconds)):
+                if self.fails(call, folder):
                     return call.name
             return ""
 
-    def _measured(self, test: str, folder: Path) -> _Call:
-        """A test, which must pass on the sources as they are."""
+    def _measured(self, test: str, folder: Path) -> Test:
         if test.endswith(".mjs"):
-            call = _Call(test, ["node", "--expose-gc", str(ROOT / "tests" / "npm" / test)])
+            call = Test(test, ["node", "--expose-gc", str(ROOT / "tests" / "npm" / test)])
         else:
-            call = _Call(test, [self.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist",
-                                "--rootdir", str(ROOT), str(ROOT / "tests" / "python" / test)])
+            call = Test(test, [self.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist",
+                               "--rootdir", str(ROOT), str(ROOT / "tests" / "python" / test)])
         place = folder / test
         self._lay_out(place, "export/")
         self._lay_out(place, "web/")
-        began = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if self._fails(call, place, 600):
-            raise SystemExit(f"{test} fails on the sources as they are")
-        ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-        call.seconds = ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime
+        self.measure(call, place)
         return call
 
     def _lay_out(self, folder: Path, file: str) -> None:
@@ -306,36 +312,18 @@ class Packages:
             for package in (*PACKAGES, "npm-hearing-host", "npm-laughter"):
                 shutil.copytree(self.npm.with_name(package), folder / package)
 
-    def _places(self, folder: Path, file: str) -> List[Path]:
-        """Where a file is in the copy."""
-        if file.startswith("export/"):
-            return [folder / file]
-        package = next(name for name, source in PACKAGES.items() if source == str(Path(file).parent))
-        return [folder / package / Path(file).name]
-
-    def _fails(self, call: _Call, folder: Path, limit: float) -> bool:
-        """Whether a test fails on a copy, or hangs: `limit` seconds of the processor and more."""
-        environment = {**os.environ, **self.variables, "PYTHONDONTWRITEBYTECODE": "1", "LABIAL_REQUIRE_ALL": "ON"}
-        if (folder / "export").exists():
-            environment["PYTHONPATH"] = str(folder / "export")
-        if (folder / "npm").exists():
-            environment["LABIAL_NPM_PACKAGE"] = str(folder / "npm")
-        limited = ["sh", "-c", f'ulimit -t {math.ceil(limit)} && exec "$0" "$@"', *call.command]
-        done = subprocess.run(limited, env=environment, cwd=folder, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL, timeout=limit * 10)
-        return done.returncode not in (0, 5)
+    def environment(self, folder: Path) -> Dict[str, str]:
+        found = {**self.variables, "PYTHONDONTWRITEBYTECODE": "1", "LABIAL_REQUIRE_ALL": "ON"}
+        for variable, place in (("PYTHONPATH", folder / "export"), ("LABIAL_NPM_PACKAGE", folder / "npm")):
+            if place.exists():
+                found[variable] = str(place)
+        return found
 
 
 def known_survivors() -> Dict[str, str]:
     """Reasons by mutants, from survivors.txt: a line for the mutant, then one, indented, for the reason."""
-    known: Dict[str, str] = {}
-    key = ""
-    for line in SURVIVORS.read_text(encoding="utf-8").splitlines() if SURVIVORS.exists() else []:
-        if line.startswith("    "):
-            known[key] = (known.get(key, "") + " " + line.strip()).strip()
-        elif line and not line.startswith("#"):
-            key = line
-    return known
+    pairs = re.findall(r"^([^#\s].*)\n    (.*)$", SURVIVORS.read_text(encoding="utf-8"), re.MULTILINE)
+    return dict(pairs)
 
 
 def tried(bench: Union[Bench, Packages], candidates: Sequence[Mutant], count: int, jobs: int) -> Dict[Mutant, str]:
