@@ -38,6 +38,5 @@ int device_tests(void);
 /* The tests of a file of this name, each run by RUN_TEST. */
 void test_arithmetic(void);
 void test_memory(void);
-void test_ticks(void);
 
 #endif

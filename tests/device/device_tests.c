@@ -59,6 +59,5 @@ int device_tests(void)
     board_put('\n');
     test_arithmetic();
     test_memory();
-    test_ticks();
     return UNITY_END() > 0;
 }
