@@ -25,8 +25,6 @@ UNARY: Dict[str, Tuple[str, ...]] = {"!": ("",), "-": ("",), "~": ("",), "++": (
 #: call swapped, a named constant or its definition off by one, a factor that converts units omitted, one of several
 #: members that are set together omitted; in JavaScript and Python also a statement that sets something to nothing.
 KINDS = ("sign", "number", "condition", "statement", "argument", "constant", "unit", "reset")
-#: Those that users would notice.
-UNFRIENDLY = ("condition", "argument", "constant", "unit", "reset")
 
 _C_TOKEN = re.compile(
     r"(?P<space>\s+|//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:[^\n\\]|\\\n)*)"

@@ -33,7 +33,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple, Union
 
-from mutants import KINDS, UNFRIENDLY, Mutant, chosen, mutants
+from mutants import KINDS, Mutant, chosen, mutants
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -358,8 +358,6 @@ def main() -> int:
     parser.add_argument("--unity", type=Path, help="folder of Unity, which holds src/unity.c")
     parser.add_argument("--packages", type=Path, metavar="BUILD", help="change Python and JavaScript; BUILD's tests")
     parser.add_argument("--kinds", nargs="*", choices=KINDS, help="of changes, instead of all")
-    parser.add_argument("--unfriendly", action="store_const", dest="kinds", const=UNFRIENDLY,
-                        help="those kinds that users would notice")
     parser.add_argument("--files", nargs="*", help="of lib/ or of packages, instead of all")
     parser.add_argument("--suites", nargs="*", default=[], help="of tests/c or of packages, instead of all")
     parser.add_argument("--survivors", action="store_true", help="only the mutants in survivors.txt")
