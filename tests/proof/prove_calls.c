@@ -16,19 +16,6 @@
 
 static volatile int64_t any_int64;
 
-int prove_blend(void);
-int prove_clock(void);
-int prove_cost(void);
-int prove_faps(void);
-int prove_fixed(void);
-int prove_followers(void);
-int prove_laugh(void);
-int prove_model(void);
-int prove_result(void);
-int prove_shape(void);
-int prove_units(void);
-int prove_viterbi(void);
-
 /* Any description, intensity, share of words and frames; the result apart from them or in place of either. */
 int prove_blend(void)
 {
