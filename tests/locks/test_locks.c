@@ -58,36 +58,30 @@ static void begin(void)
     assert_taken(0);
 }
 
+/* The result of a call that takes the lock. */
+static void assert_takes_it(int64_t result, int64_t wanted)
+{
+    assert_int_equal(result, wanted);
+    assert_taken(1);
+}
+
 TEST(each_call_takes_the_lock_once)
 {
     uint8_t shares[LABIAL_VISEMES];
     begin();
-    assert_int_equal(labial_room(&stream), LABIAL_QUEUE);
-    assert_taken(1);
-    assert_int_equal(labial_push(&stream, 1, 100), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_push(&stream, 255, 100), LABIAL_ERROR_PHONEME);
-    assert_taken(1);
-    assert_int_equal(labial_use(&stream, &speech_en), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_articulation(&stream, 130), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_latency(&stream).frames, 5);
-    assert_taken(1);
-    assert_int_equal(labial_uses(&stream, &speech_en), 1);
-    assert_taken(1);
-    assert_int_equal(labial_exact(&stream, 0), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_visemes(&stream, &speech_en, labial_arpabet_visemes, shares), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_restart(&stream), LABIAL_ERROR_STATE);
-    assert_taken(1);
-    assert_int_equal(labial_end(&stream), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_cancel(&stream, 40), LABIAL_OK);
-    assert_taken(1);
-    assert_int_equal(labial_end(NULL), LABIAL_ERROR_NULL);
-    assert_taken(1);
+    assert_takes_it(labial_room(&stream), LABIAL_QUEUE);
+    assert_takes_it(labial_push(&stream, 1, 100), LABIAL_OK);
+    assert_takes_it(labial_push(&stream, 255, 100), LABIAL_ERROR_PHONEME);
+    assert_takes_it(labial_use(&stream, &speech_en), LABIAL_OK);
+    assert_takes_it(labial_articulation(&stream, 130), LABIAL_OK);
+    assert_takes_it(labial_latency(&stream).frames, 5);
+    assert_takes_it(labial_uses(&stream, &speech_en), 1);
+    assert_takes_it(labial_exact(&stream, 0), LABIAL_OK);
+    assert_takes_it(labial_visemes(&stream, &speech_en, labial_arpabet_visemes, shares), LABIAL_OK);
+    assert_takes_it(labial_restart(&stream), LABIAL_ERROR_STATE);
+    assert_takes_it(labial_end(&stream), LABIAL_OK);
+    assert_takes_it(labial_cancel(&stream, 40), LABIAL_OK);
+    assert_takes_it(labial_end(NULL), LABIAL_ERROR_NULL);
 }
 
 TEST(a_tick_calls_the_callback_without_the_lock)

@@ -189,18 +189,12 @@ class Oracle:
                 moment = end
         else:
             timings = labial.word_timings([(text, start, end) for start, end, text in utterance["words"]])
-        found, moment = [], 0
-        for label, length in timings:
-            found.append((moment, moment + int(length), label))
-            moment += int(length)
-        return [item for item in found if item[2] != "SIL"]
+        ends = list(itertools.accumulate(int(length) for _, length in timings))
+        return [(begin, end, label) for begin, end, (label, _) in zip([0, *ends], ends, timings) if label != "SIL"]
 
     def ends(self) -> List[int]:
         """Where each utterance ends."""
-        found = []
-        for one in self.utterances:
-            found.append(one["origin"] + max([one["end"], *(end for _, end, _ in self.spoken(one))]))
-        return found
+        return [one["origin"] + max([one["end"], *(end for _, end, _ in self.spoken(one))]) for one in self.utterances]
 
     def from_time(self, start: int) -> Plan:
         """All that is known from a time on."""
@@ -266,8 +260,7 @@ class Oracle:
 
 
 def _utterance(origin: int, queued: bool) -> Dict[str, Any]:
-    return {"origin": origin, "end": 0, "messages": [], "words": [], "phonemes": [], "queued": queued, "early": False,
-            "name": None}
+    return dict(origin=origin, end=0, messages=[], words=[], phonemes=[], queued=queued, early=False, name=None)
 
 
 def _ms(seconds: float) -> int:
@@ -278,11 +271,6 @@ def _timings(plan: Plan) -> List[Tuple[str, float]]:
     return [(label, min(end - start, ENDLESS)) for start, end, label in plan]
 
 
-def frame(plan: Plan, number: int) -> Faps:
-    """A frame of the motion of a plan."""
-    return _motion(tuple(plan))[number]
-
-
 def eased(step: int, steps: int) -> int:
     """3 s^2 - 2 s^3 of 2^14, at a step of so many."""
     share = (step << 14) // steps
@@ -291,7 +279,7 @@ def eased(step: int, steps: int) -> int:
 
 def rested(plan: Plan, number: int) -> Faps:
     """A frame of a voice that follows a plan, which eases to rest after all that is known."""
-    made = frame(plan, number - plan[0][0] // 20)
+    made = _motion(tuple(plan))[number - plan[0][0] // 20]
     passed = min(max(0, number * 20 - int(plan[-1][0]) - STILL), REST - STILL)
     left = 16384 - eased(passed, REST - STILL)
     return tuple((fap * left + 8192) >> 14 for fap in made)

@@ -38,11 +38,19 @@ def _sounds(first: int = 0, end: int = len(SOUNDS)) -> List[List[Any]]:
     return [["push", *sound] for sound in SOUNDS[first:end]]
 
 
-def _stamps(*words: Tuple[str, float, float]) -> List[List[Any]]:
-    """A message of Rime."""
-    texts, starts, ends = zip(*words)
-    stamps = {"words": list(texts), "start": list(starts), "end": list(ends)}
-    return [["feed", {"type": "timestamps", "contextId": "r", "word_timestamps": stamps}]]
+def _stamps(name: Tuple[str, str], *words: Tuple[str, float, float]) -> List[Any]:
+    """A message of words, with the name of what it belongs to."""
+    stamps = {key: list(values) for key, values in zip(("words", "start", "end"), zip(*words))}
+    return ["feed", {"type": "timestamps", name[0]: name[1], "word_timestamps": stamps}]
+
+
+def _rime(*words: Tuple[str, float, float]) -> List[Any]:
+    return _stamps(("contextId", "r"), *words)
+
+
+def _answer(name: str, *words: Tuple[str, float, float]) -> List[Any]:
+    """A message of Cartesia."""
+    return _stamps(("context_id", name), *words)
 
 
 def _words(first: int = 0, end: int = len(WORDS)) -> List[List[Any]]:
@@ -67,12 +75,16 @@ def _one_by_one(name: str, every: float) -> List[List[Any]]:
             for step in (feed, _plays(round(every * k, 3), round(every * (k + 1) - FRAME, 3)))]
 
 
+def _aligned(text: str, starts: List[int], lengths: List[int]) -> List[Any]:
+    """A message of ElevenLabs."""
+    return ["feed", {"alignment": {"chars": list(text), "charStartTimesMs": starts, "charDurationsMs": lengths}}]
+
+
 def _split_word() -> List[List[Any]]:
     """ElevenLabs' characters in messages that end within a word, whose times go on, and begin at 0 again."""
     def message(text: str, start: int) -> List[Any]:
         starts = [start + 70 * k + 9 * (k % 3) for k in range(len(text))]
-        lengths = [after - begin for begin, after in zip(starts, [*starts[1:], start + 70 * len(text)])]
-        return ["feed", {"alignment": {"chars": list(text), "charStartTimesMs": starts, "charDurationsMs": lengths}}]
+        return _aligned(text, starts, [b - a for a, b in zip(starts, [*starts[1:], start + 70 * len(text)])])
 
     return [message("Maybe pe", 100), _plays(0, 0.2), message("ople [soft", 660), _plays(0.22, 0.4),
             message("ly] hum.", 1360), _plays(0.42, 1.6), message(" By the", 0), _plays(1.62, 3)]
@@ -84,18 +96,9 @@ def _characters(*pieces: str) -> List[List[Any]]:
     for text in pieces:
         lengths = [0 if character == " " else 300 if character in "、。，！" else 150 - 20 * (k % 3)
                    for k, character in enumerate(text)]
-        starts = [start + sum(lengths[:k]) for k in range(len(text))]
-        steps.append(["feed", {"alignment": {"chars": list(text), "charStartTimesMs": starts,
-                                             "charDurationsMs": lengths}}])
+        steps.append(_aligned(text, [start + sum(lengths[:k]) for k in range(len(text))], lengths))
         start += sum(lengths)
     return steps
-
-
-def _answer(name: str, *words: Tuple[str, float, float]) -> List[Any]:
-    """A message of Cartesia."""
-    texts, starts, ends = zip(*words)
-    stamps = {"words": list(texts), "start": list(starts), "end": list(ends)}
-    return ["feed", {"type": "timestamps", "context_id": name, "word_timestamps": stamps}]
 
 
 def _long() -> List[List[Any]]:
@@ -131,8 +134,8 @@ SESSIONS: Dict[str, Dict[str, Any]] = {
     "an utterance cuts the one before": {"steps": [*_sounds(), _plays(0, 0.5), ["begin", 0.84], *_sounds(),
                                                    _plays(0.52, 2.6)]},
     "sentences whose times begin again, a little later": {"words": True, "steps": [
-        *_stamps(("Maybe", 0.08, 0.5), ("people", 0.52, 0.9)), *_stamps(("hum", 0.12, 0.4), ("by", 0.45, 0.8)),
-        _plays(0, 0.4), *_stamps(("the", 0.16, 0.3), ("pool", 0.35, 0.9)), _plays(0.42, 3.2)]},
+        _rime(("Maybe", 0.08, 0.5), ("people", 0.52, 0.9)), _rime(("hum", 0.12, 0.4), ("by", 0.45, 0.8)),
+        _plays(0, 0.4), _rime(("the", 0.16, 0.3), ("pool", 0.35, 0.9)), _plays(0.42, 3.2)]},
     "told before it begins": {"steps": [*_sounds(), ["begin", 0.0], ["finish"], _plays(0, 1.5), *_sounds(0, 4),
                                         _plays(1.52, 1.7), ["begin", 2.0], *_sounds(4), _plays(1.72, 4)]},
     "finished, and more": {"steps": [*_sounds(), ["finish"], _plays(0, 1.5), *_sounds(0, 4), _plays(1.52, 2.6)]},
