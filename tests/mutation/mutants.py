@@ -90,16 +90,15 @@ class Mutant:
         return source[: self.start] + self.new + source[self.start + len(self.old) :]
 
 
-@dataclass(frozen=True)
-class _Token:
+class _Token(NamedTuple):
     kind: str
     text: str
     start: int
 
 
 def _tokens(source: str, language: _Language) -> List[_Token]:
-    found = ((match.lastgroup or "", match.group(), match.start()) for match in language.token.finditer(source))
-    return [_Token(*token) for token in found if token[0] != "space"]
+    return [_Token(match.lastgroup or "", match.group(), match.start()) for match in language.token.finditer(source)
+            if match.lastgroup != "space"]
 
 
 def _number_changes(text: str) -> Iterator[str]:
@@ -141,15 +140,8 @@ def _statement(language: _Language, source: str, tokens: Sequence[_Token], i: in
     return ""
 
 
-def _changes(language: _Language, source: str, tokens: Sequence[_Token], i: int) -> Iterator[Change]:
-    """What stands at token `i`, or in the bracket behind it, and may become another."""
-    for kind, old, new in _texts_changed(language, source, tokens, i):
-        yield Change(tokens[i + 1].start if old.startswith("(") else tokens[i].start, kind, old, new)
-
-
-def _texts_changed(language: _Language, source: str, tokens: Sequence[_Token],
-                   i: int) -> Iterator[Tuple[str, str, str]]:
-    """Kind, old text, new text."""
+def _changes(language: _Language, source: str, tokens: Sequence[_Token], i: int) -> Iterator[Tuple[str, str, str]]:
+    """What stands at token `i`, or in the bracket behind it, and may become another: kind, old text, new text."""
     token, before = tokens[i], tokens[i - 1]
     is_value = before.kind in ("word", "number") and before.text not in language.keywords
     is_binary = is_value or before.text in (")", "]")
@@ -171,7 +163,7 @@ def _texts_changed(language: _Language, source: str, tokens: Sequence[_Token],
         condition = _bracket(source, tokens, i + 1)
         yield "condition", condition, f"(!{condition})"
     elif token.kind == "word" and token.text not in (*language.keywords, *SYMMETRIC) and tokens[i + 1].text == "(":
-        behind = _behind(tokens, i + 1)
+        behind = tokens[_closing(tokens, i + 1) + 1].text
         if language is _C or (before.text != "function" and behind not in ("{", "=>")):  # which define
             for swapped in _swaps(source, tokens, i + 1):
                 yield "argument", _bracket(source, tokens, i + 1), swapped
@@ -186,9 +178,9 @@ def _is_constant(tokens: Sequence[_Token], i: int, language: _Language = _C) -> 
     """Whether token `i` is a named constant that is used, not the length of an array that is declared; in JavaScript
     constants may be texts, and are left alone."""
     token, before, behind = tokens[i], tokens[i - 1], tokens[i + 1]
-    if language is not _C or token.kind != "word" or not _CONSTANT.match(token.text) or token.text == "NULL":
+    if language is not _C or token.kind != "word" or not _CONSTANT.match(token.text):
         return False
-    if behind.text == "(":
+    if token.text == "NULL" or behind.text == "(":
         return False
     declares = before.text == "[" and behind.text == "]" and tokens[i - 2].kind == "word" and (
         tokens[i - 3].kind == "word" and tokens[i - 3].text not in _C_KEYWORDS)
@@ -205,14 +197,14 @@ def _is_factor(tokens: Sequence[_Token], i: int) -> bool:
     return tokens[i].kind == "word" and bool(_CONSTANT.match(tokens[i].text))
 
 
-def _behind(tokens: Sequence[_Token], i: int) -> str:
-    """What stands behind the bracket that token `i` opens."""
+def _closing(tokens: Sequence[_Token], i: int) -> int:
+    """The token that closes the bracket that token `i` opens."""
     depth = 0
-    for j in range(i, len(tokens) - 1):
+    for j in range(i, len(tokens)):
         depth += (tokens[j].text == "(") - (tokens[j].text == ")")
         if depth == 0:
-            return tokens[j + 1].text
-    return ""
+            return j
+    raise ValueError("a bracket is not closed")
 
 
 def _arguments(source: str, tokens: Sequence[_Token], i: int) -> List[Tuple[int, int]]:
@@ -262,12 +254,7 @@ def _is_cast(tokens: Sequence[_Token], i: int) -> bool:
 
 
 def _bracket(source: str, tokens: Sequence[_Token], i: int) -> str:
-    depth = 0
-    for token in tokens[i:]:
-        depth += (token.text == "(") - (token.text == ")")
-        if depth == 0:
-            return source[tokens[i].start : token.start + 1]
-    raise ValueError("a bracket is not closed")
+    return source[tokens[i].start : tokens[_closing(tokens, i)].start + 1]
 
 
 def _changed(path: Path, source: str) -> Iterator[Change]:
@@ -282,7 +269,8 @@ def _changed(path: Path, source: str) -> Iterator[Change]:
             yield Change(match.start(1), "constant", match.group(1), new)
     for begin, end in _bodies(tokens) if language is _C else [(0, len(tokens) - 2)]:
         for i in range(begin + 1, end):
-            yield from _changes(language, source, tokens, i)
+            for kind, old, new in _changes(language, source, tokens, i):
+                yield Change(tokens[i + old.startswith("(")].start, kind, old, new)
 
 
 def mutants(path: Path, name: str) -> List[Mutant]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, Union
 
@@ -29,6 +30,7 @@ _CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*$")
 #: Least number that may convert units.
 _FACTOR_MIN = 10
 _CONDITIONS = (ast.If, ast.While, ast.IfExp)
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 #: Functions whose result does not depend on the order of their arguments.
 SYMMETRIC = ("min", "max", "minimum", "maximum")
 
@@ -42,9 +44,10 @@ def python_changes(source: str) -> Iterator[Change]:
         if value is not None and _number(value) is not None:
             for new in _numbers(value):
                 yield text.change("constant", value, new)
-    for function in _functions(tree):
-        for node in _inside(function):
-            yield from _changes(text, node)
+    for function in ast.walk(tree):
+        if isinstance(function, _FUNCTIONS):
+            for node in _inside(function):
+                yield from _changes(text, node)
 
 
 class _Text:
@@ -53,9 +56,7 @@ class _Text:
     def __init__(self, source: str) -> None:
         self.source = source
         self.lines = source.splitlines(keepends=True)
-        self.starts = [0]
-        for line in self.lines:
-            self.starts.append(self.starts[-1] + len(line))
+        self.starts = [0, *itertools.accumulate(map(len, self.lines))]
 
     def at(self, line: int, column: int) -> int:
         return self.starts[line - 1] + len(self.lines[line - 1].encode()[:column].decode())
@@ -69,8 +70,7 @@ class _Text:
         return self.source[begin:end]
 
     def change(self, kind: str, node: ast.AST, new: str) -> Change:
-        begin, end = self.span(node)
-        return Change(begin, kind, self.source[begin:end], new)
+        return Change(self.span(node)[0], kind, self.of(node), new)
 
     def between(self, kind: str, left: ast.AST, right: ast.AST, pattern: str, new: str) -> Iterator[Change]:
         """The sign between two operands, which a pattern finds, becomes another."""
@@ -80,12 +80,6 @@ class _Text:
             yield Change(begin + match.start(), kind, match.group(), new)
 
 
-def _functions(tree: ast.AST) -> Iterator[Union[ast.FunctionDef, ast.AsyncFunctionDef]]:
-    for node in ast.walk(tree):
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            yield node
-
-
 def _inside(function: Union[ast.FunctionDef, ast.AsyncFunctionDef]) -> Iterator[ast.AST]:
     """The nodes of a function's body and of its parameters' values, without annotations and nested functions."""
     waiting: List[ast.AST] = [*function.args.defaults, *filter(None, function.args.kw_defaults), *function.body]
@@ -93,11 +87,9 @@ def _inside(function: Union[ast.FunctionDef, ast.AsyncFunctionDef]) -> Iterator[
         node = waiting.pop()
         yield node
         for name, value in ast.iter_fields(node):
-            if name in ("annotation", "returns", "type_comment") or (isinstance(node, ast.JoinedStr)):
-                continue
-            for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST) and not isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)):
-                    waiting.append(child)
+            if name not in ("annotation", "returns", "type_comment") and not isinstance(node, ast.JoinedStr):
+                waiting += [child for child in (value if isinstance(value, list) else [value])
+                            if isinstance(child, ast.AST) and not isinstance(child, _FUNCTIONS)]
 
 
 def _number(node: Optional[ast.AST]) -> Optional[float]:
