@@ -24,7 +24,7 @@ from typing import Dict, List, Sequence
 
 import numpy as np
 
-from labial.corpus import read_corpus
+from labial.corpus import Episode, read_corpus
 from labial.errors import LabialError
 from labial.evaluate.loss import path_loss
 from labial.reference.stream import aims, synthesise
@@ -39,17 +39,17 @@ from labial.tables.quantise import ExportedModel, quantise
 EPISODES = 60
 #: Most frames of SOLVER, BENCH_SOLVE of unit.h.
 LONGEST = 400
-#: A unit of error in FAP units: 1/1024 of full scale, which is what positions can be: 1024 FAP units to either side
-#: (LABIAL_POSITION_MAX).
-UNIT = 1.0
+
+
+def said_in(model: Model, episode: Episode) -> Stream:
+    return stream_of(episode.segments, model, round(1000 * episode.segments[0].start))
 
 
 def corpus_streams(path: str, model: Model) -> List[Stream]:
     """The streams of EPISODES episodes of a corpus."""
     episodes = list(read_corpus(path, model.kind))
     chosen = np.unique(np.linspace(0, len(episodes) - 1, min(EPISODES, len(episodes))).astype(int))
-    parts = [episodes[i].segments for i in chosen]
-    return [stream_of(segments, model, round(1000 * segments[0].start)) for segments in parts]
+    return [said_in(model, episodes[i]) for i in chosen]
 
 
 def check_bundled(exported: ExportedModel, root: Path) -> None:
@@ -62,8 +62,8 @@ def check_bundled(exported: ExportedModel, root: Path) -> None:
 
 
 def solver_errors(tables: ExportedTables, solver: Sequence[str], streams: Sequence[Stream]) -> np.ndarray:
-    """(frames, C) FAP: the library's solution less the float64 one, for the same tables, paths and targets, streams
-    being cut where they are longer than the library's program takes."""
+    """(frames, C) FAP, each 1/1024 of what positions can be (LABIAL_POSITION_MAX): the library's solution less the
+    float64 one, for the same tables, paths and targets, streams being cut that are longer than its program takes."""
     given, expected = [], []
     for stream in streams:
         target, _, ends = aims(tables, stream)
@@ -95,25 +95,21 @@ def measure(model: Model, exported: ExportedModel, solver: Sequence[str],
     lost_by_window = np.concatenate([synthesise(tables, stream) - synthesise(tables, stream, whole=True)
                                      for stream in streams])
     lost = np.concatenate([path_loss(ideal, tables, stream) for stream in streams])
-    return {"solver_largest": float(np.abs(errors).max() / UNIT),
-            "solver_rms": float(np.sqrt(np.mean(errors**2)) / UNIT),
+    return {"solver_largest": float(np.abs(errors).max()),
+            "solver_rms": float(np.sqrt(np.mean(errors**2))),
             "window_largest": float(np.abs(lost_by_window).max()),
             "window_rms": float(np.sqrt(np.mean(lost_by_window**2))),
             "path_state": float(lost.mean()),
             "path_worst_channel": float(lost.mean(axis=0).max())}
 
 
-def print_utterances(model: Model, corpus: str) -> None:
-    for episode in read_corpus(corpus, model.kind):
-        stream = stream_of(episode.segments, model, round(1000 * episode.segments[0].start))
-        print(" ".join(f"{phoneme} {milliseconds}" for phoneme, milliseconds in stream))
-
-
 def main(arguments: List[str]) -> int:
     """Prints the figures as JSON, or utterances; status 1 and a message for invalid input."""
     try:
         if arguments[0] == "utterances":
-            print_utterances(load(arguments[1]), arguments[2])
+            model = load(arguments[1])
+            for episode in read_corpus(arguments[2], model.kind):
+                print(" ".join(f"{phoneme} {milliseconds}" for phoneme, milliseconds in said_in(model, episode)))
             return 0
         path, name, solver, kind, *corpus = arguments
         model = load(path)

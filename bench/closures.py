@@ -13,7 +13,7 @@ import sys
 from array import array
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -39,12 +39,6 @@ class Said(NamedTuple):
     frames: np.ndarray  #: (T, 13) whole FAPs
     closures: List[Tuple[int, int]]  #: first frame and end of each p, b, m, a frame wider than spoken
     labiodentals: List[Tuple[int, int]]  #: those of each f, v
-
-
-def timings(voice: str, texts: Sequence[str]) -> Iterator[List[Tuple[str, float]]]:
-    """The phonemes of each text as `voice` says it, with their milliseconds."""
-    for spoken in speak(voice, texts):
-        yield [(segment.label, 1000.0 * (segment.end - segment.start)) for segment in spoken.segments]
 
 
 def moving(spoken: Sequence[Tuple[str, float]]) -> Said:
@@ -102,7 +96,8 @@ def main(arguments: Sequence[str]) -> int:
         print(__doc__, file=sys.stderr)
         return 2
     texts = [line for line in Path(arguments[0]).read_text(encoding="utf-8").splitlines() if line.strip()]
-    said = [moving(item) for voice in arguments[1:] for item in timings(voice, texts)]
+    said = [moving([(segment.label, 1000.0 * (segment.end - segment.start)) for segment in spoken.segments])
+            for voice in arguments[1:] for spoken in speak(voice, texts)]
     stops = [least for item in said for least in least_openings(item.frames, item.closures)]
     others = [least for item in said for least in least_openings(item.frames, item.labiodentals)]
     print(f"{len(stops)} p, b, m in {len(said)} sentences: at most {max(stops)} FAP units open")

@@ -28,7 +28,6 @@ import numpy as np
 
 from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError
-from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.kinds import shapes_for
 from labial.fit.landmarks import read_head
@@ -160,23 +159,18 @@ class Stage:
         return found if len(found) >= {"arkit": 10, "oculus": 10, "vrm": 5}[kind] else {}
 
     def on(self, weights: Mapping[str, float], shapes: Mapping[str, str]) -> Dict[str, float]:
-        """Weights by the names of the mesh's own shapes."""
-        return parts_of(self.mesh, {shapes[name]: float(value) for name, value in weights.items() if name in shapes})
+        """Weights by the names of the mesh's own shapes, of which a file's expressions may have several."""
+        total: Dict[str, float] = {}
+        for name, value in {shapes[name]: float(value) for name, value in weights.items() if name in shapes}.items():
+            for part, share in self.mesh.parts.get(name, [(name, 1.0)]):
+                total[part] = total.get(part, 0.0) + share * value
+        return total
 
     def pictures(self, weights: Sequence[Mapping[str, float]]) -> np.ndarray:
         """(n, 3 PIXELS PIXELS) float, what the head looks like."""
         found = [np.frombuffer(base64.b64decode(item), np.uint8) for first in range(0, len(weights), _PIECE)
                  for item in self._page.evaluate(f"pictures({json.dumps(weights[first:first + _PIECE])}, {PIXELS})")]
         return np.stack(found).astype(np.float64)
-
-
-def parts_of(mesh: Mesh, weights: Mapping[str, float]) -> Dict[str, float]:
-    """The weights of a mesh's own shapes, where a file's expressions are made of several."""
-    total: Dict[str, float] = {}
-    for name, value in weights.items():
-        for part, part_share in mesh.parts.get(name, [(name, 1.0)]):
-            total[part] = total.get(part, 0.0) + part_share * value
-    return total
 
 
 def timed(motion: Motion) -> List[Tuple[str, float, float]]:

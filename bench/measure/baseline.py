@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Dict, List, Sequence, Tuple
@@ -14,7 +15,7 @@ TOLERANCE = 0.02
 
 def write(path: Path, figures: Sequence[Figure]) -> None:
     """Writes figures as JSON, one a line."""
-    lines = ",\n".join("  " + json.dumps(figure.as_json()) for figure in figures)
+    lines = ",\n".join("  " + json.dumps(dataclasses.asdict(figure)) for figure in figures)
     path.write_text(f"[\n{lines}\n]\n", encoding="utf-8")
 
 
@@ -46,13 +47,11 @@ def compare(old: Sequence[Figure], new: Sequence[Figure]) -> Tuple[List[str], Li
         if not now:
             missing.setdefault(before.target, []).append(before.figure)
         elif now.tool != before.tool:
-            sentence = f"Not compared: what {before.tool} was measured with, since this is {now.tool}."
-            if sentence not in passed_over:
-                passed_over.append(sentence)
+            passed_over.append(f"Not compared: what {before.tool} was measured with, since this is {now.tool}.")
         elif now.value > before.value + abs(before.value) * TOLERANCE:
             share = f" ({100.0 * (now.value / before.value - 1.0):+.1f} %)" if before.value else ""
             worse.append(f"{before.target}, {before.figure}: {before.value:g} became {now.value:g} {now.unit}{share}.")
     for target, figures in missing.items():
         what = ", ".join(figures) if len(figures) <= _NAMED else f"{len(figures)} figures"
         passed_over.append(f"Not measured, and so not compared: {target}, {what}.")
-    return worse, passed_over
+    return worse, list(dict.fromkeys(passed_over))

@@ -91,25 +91,17 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
         found = printed(command)
         if model in checksums and found["checksum"] != checksums[model]:
             raise RuntimeError(f"{bench.shown(command)}: its frames are not the host's")
-        mean = found["tick_instructions"] / found["frames"]
-
-        def add(figure: str, value: float, unit: str, model: str = model, command: List[str] = command) -> None:
+        _ticks(bench, board, model, "worst tick", command, found)
+        pushing = round(found["push_instructions"] / found["frames"])
+        for figure, value, unit in (("pushing", pushing, "instructions/frame"),
+                                    ("labial_init()", found["init_instructions"], "instructions"),
+                                    ("stack, painted", found["stack"], "bytes")):
             bench.add(board.preset, f"{model}: {figure}", value, unit, command, tool_version)
-
-        add("mean", round(mean), "instructions/frame")
-        add("worst tick", found["tick_worst"], "instructions")
-        add("worst tick / mean", round(found["tick_worst"] / mean, 3), "ratio")
-        add("pushing", round(found["push_instructions"] / found["frames"]), "instructions/frame")
-        add("labial_init()", found["init_instructions"], "instructions")
-        add("stack, painted", found["stack"], "bytes")
-        _check_stack(bench, board, found["stack"])
-    command = images["bench_turns"]
-    found = printed(command)
-    mean = found["tick_instructions"] / found["frames"]
-    for figure, value, unit in (("mean", round(mean), "instructions/frame"),
-                                ("worst change", found["tick_worst"], "instructions"),
-                                ("worst change / mean", round(found["tick_worst"] / mean, 3), "ratio")):
-        bench.add(board.preset, f"turns: {figure}", value, unit, command, tool_version)
+        # The call graph excludes the callback, a leaf.
+        bound, stack = bench.value(board.preset, "stack -O2: every function"), found["stack"]
+        if bound is not None and stack > bound + _CALLBACK_STACK:
+            raise RuntimeError(f"{board.core}: {stack} bytes of stack were used, the call graph allows {bound}")
+    _ticks(bench, board, "turns", "worst change", images["bench_turns"], printed(images["bench_turns"]))
     command = images["bench_ticks"]
     found = printed(command)
     for name, what in INPUTS.items():
@@ -122,8 +114,10 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
               command, tool_version)
 
 
-def _check_stack(bench: Bench, board: Board, painted: int) -> None:
-    """Raises RuntimeError if a run used more stack than the call graph allows, which excludes the callback, a leaf."""
-    bound = bench.value(board.preset, "stack -O2: every function")
-    if bound is not None and painted > bound + _CALLBACK_STACK:
-        raise RuntimeError(f"{board.core}: {painted} bytes of stack were used, the call graph allows {bound}")
+def _ticks(bench: Bench, board: Board, what: str, worst: str, command: List[str], found: Dict[str, int]) -> None:
+    """Adds what the ticks take that an image has `found`."""
+    mean = found["tick_instructions"] / found["frames"]
+    for figure, value, unit in (("mean", round(mean), "instructions/frame"),
+                                (worst, found["tick_worst"], "instructions"),
+                                (f"{worst} / mean", round(found["tick_worst"] / mean, 3), "ratio")):
+        bench.add(board.preset, f"{what}: {figure}", value, unit, command, version(f"{board.prefix}gcc"))

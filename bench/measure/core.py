@@ -6,9 +6,9 @@ import re
 import shlex
 import shutil
 import subprocess
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Dict, List, Optional, Sequence, Union
+from typing import List, Optional, Sequence, Union
 
 
 class LeftOut(Exception):
@@ -42,9 +42,6 @@ class Figure:
         of ratios to what others need, which :attr:`versus_others` tells, more is better."""
         return not self.timed and not self.versus_others and "corpus" not in self.figure
 
-    def as_json(self) -> Dict[str, Union[str, float]]:
-        return asdict(self)
-
 
 @dataclass
 class Bench:
@@ -68,10 +65,7 @@ class Bench:
         return " ".join(map(_quoted, parts))
 
     def value(self, target: str, figure: str) -> Optional[float]:
-        for one in self.figures:
-            if (one.target, one.figure) == (target, figure):
-                return one.value
-        return None
+        return next((one.value for one in self.figures if (one.target, one.figure) == (target, figure)), None)
 
 
 def _quoted(part: str) -> str:

@@ -3,13 +3,11 @@ hearing; instructions for a word."""
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
-from typing import Dict, List, Tuple
+from typing import Dict, List
 
 from measure.boards import RATE, SECONDS, Board, build, printed
-from measure.core import Bench, run, version
-from measure.sizes import compile_command, sections
+from measure.core import Bench, version
+from measure.sizes import compile_command, sized
 
 #: The files of lib/ that hear; a program links the others only if it calls them.
 PARTS = ("hear", "hear_convert", "hear_features", "hear_motion", "hear_network", "fixed")
@@ -28,8 +26,9 @@ def models(bench: Bench) -> List[str]:
 def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
     """Adds the figures of `board`. `checksums` are those of the boards before, by image; raises RuntimeError if its
     frames differ from theirs."""
-    tool_version = version(f"{board.prefix}gcc")
-    flash = _flash(bench, board, tool_version)
+    tool_version, size = version(f"{board.prefix}gcc"), f"{board.prefix}size"
+    compile_one = compile_command(bench, board, "-Os")
+    code = sum(sized(size, [*compile_one, bench.source / "lib" / f"{part}.c"])["text"] for part in PARTS)
     images = build(bench, board)
     for model in models(bench):
         for rate in RATES:
@@ -44,27 +43,9 @@ def measure(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:
                 bench.add(board.preset, figure, value, "instructions/frame", command, tool_version)
         bench.add(board.preset, f"{model}: RAM", found["ram"], "bytes", command, tool_version)
         bench.add(board.preset, f"{model}: stack, painted", found["stack"], "bytes", command, tool_version)
-        size, sized = flash[model]
-        bench.add(board.preset, f"{model}: flash", size, "bytes", sized, tool_version)
-
-
-def _flash(bench: Bench, board: Board, tool_version: str) -> Dict[str, Tuple[int, List[str]]]:
-    """Bytes of each model with the code that hears, compiled for size, and the command."""
-    found: Dict[str, Tuple[int, List[str]]] = {}
-    size, command = f"{board.prefix}size", compile_command(bench, board, "-Os")
-    with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
-        out = Path(scratch) / "out.o"
-
-        def text(path: Path) -> int:
-            run([*command, path, "-o", out])
-            return sections(size, out)["text"]
-
-        code = sum(text(bench.source / "lib" / f"{part}.c") for part in PARTS)
-        for model in models(bench):
-            tables = text(bench.source / "lib" / "models" / f"{model}.c")
-            shown = [*command, *(f"lib/{part}.c" for part in PARTS), f"lib/models/{model}.c", "&&", size, "*.o"]
-            found[model] = (code + tables, [str(item) for item in shown])
-    return found
+        tables = sized(size, [*compile_one, bench.source / "lib" / "models" / f"{model}.c"])["text"]
+        shown = [*compile_one, *(f"lib/{part}.c" for part in PARTS), f"lib/models/{model}.c", "&&", size, "*.o"]
+        bench.add(board.preset, f"{model}: flash", code + tables, "bytes", shown, tool_version)
 
 
 def measure_words(bench: Bench, board: Board, checksums: Dict[str, int]) -> None:

@@ -64,9 +64,9 @@ def measure(bench: Bench, compiler: str) -> None:
     for model in MODELS:
         command = [program, model, str(TIMED_SECONDS)]
         rate = max(parse(run(command).stdout.decode())["rate"] for _ in range(3))
-        bench.add("host", f"{model}: speed", rate, "frames/s", command, version(compiler))
-        bench.add("host", f"{model}: speed at {RATE} frames/s", round(rate / RATE), "times real time", command,
-                  version(compiler))
+        for figure, value, unit in (("speed", rate, "frames/s"),
+                                    (f"speed at {RATE} frames/s", round(rate / RATE), "times real time")):
+            bench.add("host", f"{model}: {figure}", value, unit, command, version(compiler))
     for model in MODELS:
         command = [program, model, str(SECONDS)]
         frames = parse(run(command).stdout.decode())["frames"]
@@ -102,22 +102,21 @@ def npm(bench: Bench) -> None:
     run(["cmake", "--build", folder, "--target", "npm-pack", "--parallel", "2"])
     compiler = version("clang")
     module = folder / "web" / "labial.wasm"
+    bench.add("wasm", "module with speech", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)
     names = ("entries.js", "index.js", "memory.js", "services.js", "speech.js", "stream.js", "table.js", "track.js",
              "unpack.js")
-    scripts = [folder / "npm" / name for name in names]
     laughter = folder / "npm-laughter" / "index.js"
-    bench.add("wasm", "module with speech", module.stat().st_size, "bytes", ["ls", "-l", module], compiler)
-    bench.add("wasm", "a page that speaks, each script compressed", sum(map(_compressed, scripts)), "bytes",
-              ["gzip", "-9c", folder / "npm" / "*.js", "|", "wc", "-c", "#", *names], compiler)
-    bench.add("wasm", "laughter, compressed", _compressed(laughter), "bytes",
-              ["gzip", "-9c", laughter, "|", "wc", "-c"], compiler)
+    fetched = [("a page that speaks, each script compressed", [folder / "npm" / name for name in names],
+                [folder / "npm" / "*.js"], ["#", *names]),
+               ("laughter, compressed", [laughter], [laughter], [])]
     for model in ("small", "large"):
         hearing = [folder / "npm-hearing" / f"{name}.js" for name in ("index", "tap", model)]
-        bench.add("wasm", f"hearing by the {model} model, each script compressed", sum(map(_compressed, hearing)),
-                  "bytes", ["gzip", "-9c", *hearing, "|", "wc", "-c"], compiler)
-    words = sorted((folder / "npm-words").glob("*.js"))
-    bench.add("wasm", "words, each script compressed", sum(map(_compressed, words)), "bytes",
-              ["gzip", "-9c", folder / "npm-words" / "*.js", "|", "wc", "-c"], compiler)
+        fetched.append((f"hearing by the {model} model, each script compressed", hearing, hearing, []))
+    fetched.append(("words, each script compressed", sorted((folder / "npm-words").glob("*.js")),
+                    [folder / "npm-words" / "*.js"], []))
+    for figure, scripts, shown, behind in fetched:
+        size = sum(len(gzip.compress(path.read_bytes(), 9, mtime=0)) for path in scripts)
+        bench.add("wasm", figure, size, "bytes", ["gzip", "-9c", *shown, "|", "wc", "-c", *behind], compiler)
     for packed in sorted(folder.glob("labial-*.tgz")):
         kinds = (f"packed {kind} package" for kind in ("laughter", "hearing-host", "hearing", "words")
                  if kind in packed.name)
@@ -127,7 +126,3 @@ def npm(bench: Bench) -> None:
     engine = "node " + run(["node", "--version"]).stdout.decode().strip().lstrip("v")
     for way, value in json.loads(run(command).stdout).items():
         bench.add("wasm", f"speech: {way}", value, "us/frame", command, f"{engine}, {compiler}")
-
-
-def _compressed(path: Path) -> int:
-    return len(gzip.compress(path.read_bytes(), 9, mtime=0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import tempfile
@@ -40,10 +41,9 @@ def _beside(bench: Bench, name: str, count: float, memory: int, command: List[Un
     bench.add("host", f"MLPG by {name}", round(count, 1), UNIT, command, tool)
     bench.add("host", f"MLPG by {name}: heap", memory, "bytes", command, tool)
     if own and own_memory:
-        bench.add("host", f"MLPG by {name} / Labial", round(count / own, 2), "times Labial's instructions", command,
-                  tool)
-        bench.add("host", f"MLPG by {name} / Labial: memory", round(memory / own_memory, 1), "times Labial's bytes",
-                  command, tool)
+        for figure, value, unit in (("", round(count / own, 2), "times Labial's instructions"),
+                                    (": memory", round(memory / own_memory, 1), "times Labial's bytes")):
+            bench.add("host", f"MLPG by {name} / Labial{figure}", value, unit, command, tool)
 
 
 def hts_engine(bench: Bench) -> None:
@@ -61,20 +61,15 @@ def hts_engine(bench: Bench) -> None:
     _beside(bench, "hts_engine", count, memory, shown_callgrind(command, function), "hts_engine")
 
 
-def sptk_mlpg() -> List[str]:
-    for folder in ("/usr/libexec/sptk/bin", "/usr/lib/sptk/bin", "/usr/local/SPTK/bin"):
-        if (Path(folder) / "mlpg").is_file():
-            return [f"{folder}/mlpg"]
-    if shutil.which("mlpg"):
-        return [str(shutil.which("mlpg"))]
-    raise LeftOut("The comparison with SPTK is left out: install the Debian package sptk.")
-
-
 def sptk(bench: Bench) -> None:
     """SPTK's program, for the same frames as one sequence: the cost of each further frame, including reading and
     writing, and its peak memory."""
     program = bench.build / "bench" / "labial-bench-mlpg"
-    mlpg = [*sptk_mlpg(), "-l", "13", "-i", "1", "-d", "-0.5", "0", "0.5", "-d", "1", "-2", "1"]
+    folders = ("/usr/libexec/sptk/bin", "/usr/lib/sptk/bin", "/usr/local/SPTK/bin", os.environ["PATH"])
+    found = shutil.which("mlpg", path=os.pathsep.join(folders))
+    if not found:
+        raise LeftOut("The comparison with SPTK is left out: install the Debian package sptk.")
+    mlpg = [found, "-l", "13", "-i", "1", "-d", "-0.5", "0", "0.5", "-d", "1", "-2", "1"]
     with tempfile.TemporaryDirectory(prefix="labial-bench-") as scratch:
         counts = {}
         for units in (FEW, MANY):

@@ -15,6 +15,9 @@ from typing import Iterable, List, Mapping, Tuple, Union
 #: A figure in a page: a number, with commas between thousands or without a leading zero, or a word such as "fourteen".
 _FIGURE = r"([-+]?\d[\d,]*(?:\.\d+)?|[-+]?\.\d+|\w+)"
 
+#: Characters of a sentence that a complaint names.
+_SHOWN = 70
+
 
 @dataclass(frozen=True)
 class Sentence:
@@ -79,13 +82,10 @@ def updated(name: str, text: str, sentences: Iterable[Sentence]) -> Tuple[str, L
             found, wanted = match[group], one.figures[group - 1]
             if found != wanted:
                 line = text.count("\n", 0, begin) + 1
-                complaints.append(f"{name}:{line}: {found} should be {wanted}, in: {_shown(one.text)}")
+                where = one.text if len(one.text) <= _SHOWN else one.text[:_SHOWN] + "..."
+                complaints.append(f"{name}:{line}: {found} should be {wanted}, in: {where}")
                 text = text[:begin] + wanted + text[end:]
     return text, complaints
-
-
-def _shown(text: str, length: int = 70) -> str:
-    return text if len(text) <= length else text[:length] + "..."
 
 
 def refresh(root: Path, figures: Mapping[str, Iterable[Sentence]], write: bool) -> List[str]:

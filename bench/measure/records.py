@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Mapping, Sequence, Tuple
 
-from measure.sources import number, rows, tables
+from measure.sources import cells, number, rows, tables
 
 FILE = Path("bench") / "records.json"
 RESULTS = Path("export") / "RESULTS.md"
@@ -49,15 +49,9 @@ class Command:
 
 
 def _search(text: str) -> Figures:
-    (table,) = _rows(text)
-    return {f"{lag} {width} {what}": float(value) for lag, width, states, motion in table
-            for what, value in (("states", states), ("motion", motion))}
-
-
-def _rows(text: str) -> List[List[List[str]]]:
-    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines()
-            if re.match(r"\| \d", line)]
-    return [rows]
+    table = [cells(line) for line in text.splitlines() if re.match(r"\| \d", line)]
+    return {f"{lag} {width} {what}": float(value) for lag, width, *both in table
+            for what, value in zip(("states", "motion"), both)}
 
 
 def _side_by_side(text: str) -> Figures:
@@ -69,12 +63,12 @@ def _side_by_side(text: str) -> Figures:
 
 
 def _closures(text: str) -> Figures:
-    stops, sentences, most = map(int, re.findall(r"(\d+) p, b, m in (\d+) sentences: at most (\d+)", text)[0])
-    others, low, half = map(int, re.findall(r"(\d+) f, v: at least (-?\d+) in 95 %, (-?\d+) in half", text)[0])
-    found: Figures = {"stops": stops, "sentences": sentences, "stops: most": most, "f, v": others, "f, v: 95 %": low,
-                      "f, v: half": half}
-    short, reach = re.findall(r"(-?\d+) us short in the median, (\d+) % reach", text)[0]
-    found.update({"short": float(short), "reach": float(reach)})
+    found: Figures = {}
+    for names, pattern in (
+        (("stops", "sentences", "stops: most"), r"(\d+) p, b, m in (\d+) sentences: at most (\d+)"),
+        (("f, v", "f, v: 95 %", "f, v: half"), r"(\d+) f, v: at least (-?\d+) in 95 %, (-?\d+) in half"),
+        (("short", "reach"), r"(-?\d+) us short in the median, (\d+) % reach")):
+        found.update(zip(names, map(float, re.findall(pattern, text)[0])))
     for slew, acceleration, values in re.findall(r"^ +(\d+|-) +(\d+|-) \| (.*)$", text, re.MULTILINE):
         for sight, pair in zip(("1", "6", "10", "32"), re.findall(r"(\S+) (\S+)", values)):
             found[f"{slew} {acceleration} {sight}: closed"], found[f"{slew} {acceleration} {sight}: opening"] = \
@@ -106,13 +100,10 @@ def _lips(text: str) -> Figures:
             for head, value in row.items() if head not in ("lips of", "method")}
 
 
-def _by_lips(model: str) -> Command:
-    folder = "export/corpora"
-    return Command((f"python -m labial evaluate-hear export/models/{model}.npz --lips {folder}/grid_singles "
-                    f"{folder}/grid_more --lips {folder}/addresses --methods "
-                    "'integers,loudness,phonemes,phonemes and sound'",), _lips, MOTION + HEARD)
-
-
+#: Evaluates a model of hearing against real lips.
+_BY_LIPS = ("python -m labial evaluate-hear export/models/{}.npz --lips export/corpora/grid_singles "
+            "export/corpora/grid_more --lips export/corpora/addresses --methods "
+            "'integers,loudness,phonemes,phonemes and sound'")
 _SENTENCES = "tests/python/sentences.txt"
 COMMANDS: Dict[str, Command] = {
     "search": Command(("python -m labial.evaluate.search speech_en export/corpora/grid_s1",), _search),
@@ -125,7 +116,8 @@ COMMANDS: Dict[str, Command] = {
     "closures of awb": Command((f"python bench/closures.py {_SENTENCES} {OTHER_VOICE}",), _closures),
     "window": Command(("python bench/window.py tests/python/sentences.flite",), _window),
     "laughs": Command(("python bench/laughs.py tests/python/sentences.flite",), _laughs),
-    **{f"real lips, {model}": _by_lips(model) for model in ("hear_ahead", "hear_host", "hear_large", "hear_small")},
+    **{f"real lips, {model}": Command((_BY_LIPS.format(model),), _lips, MOTION + HEARD)
+       for model in ("hear_ahead", "hear_host", "hear_large", "hear_small")},
     "first split": Command(("python export/reproduce.py split",), _split),
 }
 
@@ -142,18 +134,14 @@ def write(root: Path, records: Mapping[str, Mapping[str, object]]) -> None:
 
 
 def digest(root: Path, record: str = "") -> str:
-    """Of everything that the motion, or the figures of a record, depend on."""
+    """Of everything that the motion, or the figures of a record, depend on; of FRAMES these are the STREAMS. A stream
+    begins with its name; its lines have numbers, or "and" and how often the line before comes again."""
+    streams = rb"^(?:%s)\n(?:[-\d].*\n|and .*\n)*" % "|".join(STREAMS).encode()
     found = hashlib.sha256()
     for name in COMMANDS[record].of if record in COMMANDS else MOTION:
         content = (root / name).read_bytes()
-        found.update(_streams(content) if name == FRAMES else content)
+        found.update(b"".join(re.findall(streams, content, re.MULTILINE)) if name == FRAMES else content)
     return found.hexdigest()[:16]
-
-
-def _streams(frames: bytes) -> bytes:
-    """The frames of STREAMS. A stream begins with its name; its lines have numbers, or "and" and how often the line
-    before comes again."""
-    return b"".join(re.findall(rb"^(?:%s)\n(?:[-\d].*\n|and .*\n)*" % "|".join(STREAMS).encode(), frames, re.MULTILINE))
 
 
 def section_commands(text: str) -> Dict[str, List[str]]:
@@ -255,10 +243,10 @@ def with_tables(text: str, title: str, report: str) -> str:
     end = next((one.start() for one in headings if len(one[1]) <= level or one[2] in others), len(text))
     body = text[begin.end() : end]
     for block in _blocks(body):
-        new = [one for one in made if _kind(one) == _kind(block)]
+        new = next((one for one in made if _kind(one) == _kind(block)), None)
         if new:
-            body = body.replace(block, new[0])
-            made.remove(new[0])
+            body = body.replace(block, new)
+            made.remove(new)
     return text[: begin.end()] + body + text[end:]
 
 

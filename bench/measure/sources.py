@@ -60,10 +60,10 @@ class Results:
 
     def table(self, section: str, place: int = 0) -> Table:
         """A table of a section, by its place there."""
-        try:
-            return tables(self._sections[section])[place]
-        except (KeyError, IndexError):
-            raise ValueError(f"export/RESULTS.md: no table {place + 1} under {section!r}") from None
+        found = tables(self._sections.get(section, ""))
+        if place >= len(found):
+            raise ValueError(f"export/RESULTS.md: no table {place + 1} under {section!r}")
+        return found[place]
 
     def rows(self, section: str) -> List[Row]:
         """The rows of the only table of a section."""
@@ -126,9 +126,8 @@ class Sources:
     def latency(self) -> str:
         """Milliseconds from the begin of a frame until the bundled models of hearing know it, as their headers say: all
         but hear_ahead."""
-        texts = [path.read_text(encoding="utf-8") for path in sorted((self.root / "lib" / "models").glob("hear_*.h"))
-                 if path.stem != "hear_ahead"]
-        found = {said for text in texts for said in re.findall(r"\b(\d+)\s(?:\* )?ms from a frame's begin", text)}
+        found = {said for path in (self.root / "lib" / "models").glob("hear_*.h") if path.stem != "hear_ahead"
+                 for said in re.findall(r"\b(\d+)\s(?:\* )?ms from a frame's begin", path.read_text(encoding="utf-8"))}
         if len(found) != 1:
             raise ValueError("lib/models/hear_*.h: the models do not name one latency")
         return found.pop()
@@ -142,11 +141,11 @@ class Sources:
 
     def workspace(self, **limits: int) -> int:
         """Bytes of the bundled speech model's workspace in a build with these limits."""
-        include = [f"-I{self.root / folder}" for folder in ("include", "lib/models")]
+        options = [*(f"-I{self.root / folder}" for folder in ("include", "lib/models")),
+                   *(f"-D{name}={value}" for name, value in limits.items())]
         with tempfile.TemporaryDirectory(prefix="labial-figures-") as folder:
             program = Path(folder) / "size.c"
             program.write_text('#include <stdio.h>\n#include "speech_en.h"\nint main(void)\n{\n'
                                '    printf("%u", (unsigned)SPEECH_EN_WORKSPACE_SIZE);\n    return 0;\n}\n', "ascii")
-            options = [f"-D{name}={value}" for name, value in limits.items()]
-            run([os.environ.get("LABIAL_CC", "cc"), *options, *include, program, "-o", program.with_suffix("")])
+            run([os.environ.get("LABIAL_CC", "cc"), *options, program, "-o", program.with_suffix("")])
             return int(run([program.with_suffix("")]).stdout)

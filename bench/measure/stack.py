@@ -58,11 +58,9 @@ class CallGraph:
             raise RuntimeError(f"recursion: {' > '.join((*above, function))}")
         if function not in self.frames:
             raise RuntimeError(f"{function}: the size of its stack frame is not known")
-        most: Tuple[int, Tuple[str, ...]] = (0, ())
-        for callee in sorted(self.calls.get(function, set()) - {_INDIRECT}):
-            below = self.deepest(callee, (*above, function))
-            if below[0] > most[0]:
-                most = below
+        below = [self.deepest(callee, (*above, function))
+                 for callee in sorted(self.calls.get(function, set()) - {_INDIRECT})]
+        most = max(below, key=lambda depth: depth[0], default=(0, ()))
         return self.frames[function] + most[0], (function, *most[1])
 
 
@@ -75,7 +73,9 @@ def add_archive(graph: CallGraph, board: Board, flags: List[str]) -> None:
         place, _, name = line.rpartition(" ")
         member_of.setdefault(name, place.split(":")[1])
     todo = graph.missing()
-    listings = _listings(board, archive) if todo else {}
+    text = run([f"{board.prefix}objdump", "-dr", archive]).stdout.decode(errors="replace") if todo else ""
+    parts = re.split(r"^(\S+):\s+file format .*$", text, flags=re.MULTILINE)
+    listings = dict(zip(parts[1::2], parts[2::2]))
     while todo:
         name = todo.pop()
         if name not in member_of:
@@ -85,12 +85,6 @@ def add_archive(graph: CallGraph, board: Board, flags: List[str]) -> None:
         graph.frames[name] = frame
         graph.calls[name] = {other for other in called if member_of.get(other) != member}
         todo |= {other for other in graph.calls[name] if other not in graph.frames}
-
-
-def _listings(board: Board, archive: str) -> Dict[str, str]:
-    text = run([f"{board.prefix}objdump", "-dr", archive]).stdout.decode(errors="replace")
-    parts = re.split(r"^(\S+):\s+file format .*$", text, flags=re.MULTILINE)
-    return dict(zip(parts[1::2], parts[2::2]))
 
 
 def _machine_code(listing: str) -> Tuple[int, Set[str]]:
@@ -128,13 +122,10 @@ def measure(bench: Bench, board: Board) -> None:
         add_archive(graph, board, list(board.options))
         headers = sorted(path.name for path in (bench.source / "include" / "labial").glob("*.h")
                          if path.name not in ("words.h", "voice.h"))
-        everything = [name for header in headers for name in public_functions(bench, header)]
-        shown = [*command, "lib/*.c"]
-        for figure, depth in (
-            (f"stack {level}: labial_tick()", graph.deepest("labial_tick")),
-            (f"stack {level}: every function", max(graph.deepest(name) for name in public_functions(bench))),
-            (f"stack {level}: all of lib", max(graph.deepest(name) for name in everything)),
-            (f"stack {level}: words.h", max(graph.deepest(name) for name in public_functions(bench, "words.h"))),
-            (f"stack {level}: voice.h", max(graph.deepest(name) for name in public_functions(bench, "voice.h"))),
-        ):
-            bench.add(board.preset, figure, depth[0], "bytes", [*shown, "#", " > ".join(depth[1])], tool_version)
+        for figure, functions in (
+            ("labial_tick()", ["labial_tick"]), ("every function", public_functions(bench)),
+            ("all of lib", [name for header in headers for name in public_functions(bench, header)]),
+            ("words.h", public_functions(bench, "words.h")), ("voice.h", public_functions(bench, "voice.h"))):
+            depth = max(map(graph.deepest, functions))
+            bench.add(board.preset, f"stack {level}: {figure}", depth[0], "bytes",
+                      [*command, "lib/*.c", "#", " > ".join(depth[1])], tool_version)

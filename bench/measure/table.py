@@ -144,11 +144,9 @@ def _profile(profile: Sequence[Row]) -> List[str]:
 
 def _goal_value(bench: Bench, target: str, figure: str) -> Optional[float]:
     begin, star, end = figure.partition("*")
-    for one in bench.figures:
-        if one.target == target and one.figure.startswith(begin) and one.figure.endswith(end):
-            if (star and one.checked) or one.figure == figure:
-                return one.value
-    return None
+    return next((one.value for one in bench.figures if one.target == target and (
+        one.figure == figure or star and one.checked and one.figure.startswith(begin) and one.figure.endswith(end))),
+        None)
 
 
 def goals(bench: Bench) -> List[Tuple[str, float, float, bool]]:
