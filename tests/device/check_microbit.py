@@ -35,14 +35,9 @@ def script(path: str) -> List[Tuple[str, str, int, int]]:
 def limits(path: str) -> Dict[str, Dict[str, int]]:
     """The numbers of each output, by a reader that knows no more TOML than this description uses."""
     outputs: Dict[str, Dict[str, int]] = {}
-    for line in Path(path).read_text(encoding="utf-8").splitlines():
-        table = re.match(r"\[output\.(\w+)\]", line)
-        value = re.match(r"(\w+) = (\d+)", line)
-        if table:
-            outputs[table[1]] = {}
-        elif value:
-            outputs[list(outputs)[-1]][value[1]] = int(value[2])
-    for output in outputs.values():
+    tables = re.split(r"^\[output\.(\w+)\]$", Path(path).read_text(encoding="utf-8"), flags=re.MULTILINE)
+    for name, table in zip(tables[1::2], tables[2::2]):
+        outputs[name] = output = {key: int(value) for key, value in re.findall(r"^(\w+) = (\d+)", table, re.MULTILINE)}
         if "closed" in output:
             output.setdefault("neutral", output["closed"])
         output.setdefault("minimum", min(output["neutral"], output["full"]))

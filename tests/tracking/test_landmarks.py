@@ -87,16 +87,23 @@ def draw(opening: float, yaw: float = 0.0) -> np.ndarray:
     return result
 
 
-def write(path: Path, pictures: Sequence[np.ndarray], fps: int) -> Path:
-    """A video of these pictures (BGR)."""
+def write(path: Path, pictures: Sequence[np.ndarray], fps: int, codec: str = "", samples: Sequence[int] = (),
+          rate: int = 16000, late: float = 0.0) -> Path:
+    """A video of these pictures (BGR), with a sound that begins so many seconds later if it has a codec."""
     path.parent.mkdir(exist_ok=True)
     with av.open(str(path), "w") as out:
         stream = out.add_stream("mpeg4", rate=Fraction(fps))
         stream.height, stream.width = pictures[0].shape[:2]
         stream.bit_rate, stream.pix_fmt = 8_000_000, "yuv420p"
+        sound = out.add_stream(codec, rate=rate, layout="mono") if codec else None
         for picture in pictures:
             out.mux(stream.encode(av.VideoFrame.from_ndarray(np.ascontiguousarray(picture), format="bgr24")))
         out.mux(stream.encode())
+        if sound:
+            frame = av.AudioFrame.from_ndarray(np.array(samples, np.int16)[None], format="s16", layout="mono")
+            frame.sample_rate, frame.pts = rate, round(late * rate)
+            out.mux(sound.encode(frame))
+            out.mux(sound.encode())
     return path
 
 
@@ -209,20 +216,8 @@ def test_sound_and_picture_are_on_one_clock(tmp_path: Path) -> None:
     rate, late = 16000, 0.3
     click = np.zeros(rate, np.int16)
     click[rate // 2 : rate // 2 + 160] = 20000
-    path = tmp_path / "a.mkv"
-    with av.open(str(path), "w") as out:
-        video = out.add_stream("mpeg4", rate=25)
-        video.width = video.height = 64
-        video.pix_fmt = "yuv420p"
-        sound = out.add_stream("pcm_s16le", rate=rate, layout="mono")
-        for level in range(40):
-            picture = np.full((64, 64, 3), 200 if level == 20 else 20, np.uint8)
-            out.mux(video.encode(av.VideoFrame.from_ndarray(picture, format="bgr24")))
-        out.mux(video.encode())
-        frame = av.AudioFrame.from_ndarray(click[None], format="s16", layout="mono")
-        frame.sample_rate, frame.pts = rate, round(late * rate)
-        out.mux(sound.encode(frame))
-        out.mux(sound.encode())
+    levels = [np.full((64, 64, 3), 200 if number == 20 else 20, np.uint8) for number in range(40)]
+    path = write(tmp_path / "a.mkv", levels, 25, "pcm_s16le", click, rate, late)
     samples = read_sound(path)
     assert abs(np.argmax(samples) / RATE - (0.5 + late)) < 0.005 and abs(len(samples) / RATE - 1.3) < 0.01
     flash = max(pictures(path), key=lambda item: item[1].mean())[0]
@@ -242,17 +237,7 @@ def speaking(path: Path, sentence: str) -> None:
     subprocess.run(["flite", "-t", sentence, "-o", str(sound)], check=True)
     samples, rate = soundfile.read(sound, dtype="int16")
     loud = np.array([np.abs(part.astype(float)).mean() for part in np.array_split(samples, len(samples) * 25 // rate)])
-    with av.open(str(path), "w") as out:
-        video, heard = out.add_stream("mpeg4", rate=25), out.add_stream("aac", rate=rate)
-        video.width = video.height = 512
-        video.pix_fmt, video.bit_rate = "yuv420p", 8_000_000
-        for level in np.sqrt(loud / loud.max()):
-            out.mux(video.encode(av.VideoFrame.from_ndarray(draw(2 * round(13 * level)), format="bgr24")))
-        out.mux(video.encode())
-        frame = av.AudioFrame.from_ndarray(samples[None], format="s16", layout="mono")
-        frame.sample_rate, frame.pts = rate, 0
-        out.mux(heard.encode(frame))
-        out.mux(heard.encode())
+    write(path, [draw(2 * round(13 * level)) for level in np.sqrt(loud / loud.max())], 25, "aac", samples, rate)
     sound.unlink()
     path.with_suffix(".txt").write_text(sentence)
 
