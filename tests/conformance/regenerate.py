@@ -159,6 +159,12 @@ def library_frames(vectors: str, **limits: int) -> str:
         return done.stdout
 
 
+def brief(text: str) -> str:
+    """The frames' text with ``and`` and a number for lines that are like the one before."""
+    rows = [(line, sum(1 for _ in same) - 1) for line, same in groupby(text.splitlines())]
+    return "".join(f"{line}\nand {alike}\n" if alike else f"{line}\n" for line, alike in rows)
+
+
 def deviations(models: Dict[str, ExportedModel], scripts: Sequence[Script], frames: Frames, **limits: int) -> str:
     """How far the frames are from the float64 reference; raises LabialError when that is too far. In the RMS a pose
     that does not move, which has one rounding, counts once. `limits` as in :func:`motion.script_motion`."""
@@ -192,7 +198,7 @@ def main() -> int:
         text = library_frames(as_c(scripts, models))
         frames = read_frames(text)
         print(deviations(models, scripts, frames))
-        (HERE / "frames.txt").write_text(text, encoding="ascii", newline="\n")
+        (HERE / "frames.txt").write_text(brief(text), encoding="ascii", newline="\n")
         (HERE / "vectors.c").write_text(as_c(scripts, models, frames), encoding="ascii", newline="\n")
     except LabialError as error:
         print(f"regenerate: {error}", file=sys.stderr)
