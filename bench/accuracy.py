@@ -46,7 +46,6 @@ def said_in(model: Model, episode: Episode) -> Stream:
 
 
 def corpus_streams(path: str, model: Model) -> List[Stream]:
-    """The streams of EPISODES episodes of a corpus."""
     episodes = list(read_corpus(path, model.kind))
     chosen = np.unique(np.linspace(0, len(episodes) - 1, min(EPISODES, len(episodes))).astype(int))
     return [said_in(model, episodes[i]) for i in chosen]

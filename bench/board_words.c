@@ -15,7 +15,6 @@ static labial_words_t stream;
 static labial_word_t word;
 static uint32_t phonemes, checksum;
 
-/* Takes all phonemes that there are. */
 static void take(void)
 {
     unsigned phoneme;

@@ -42,7 +42,6 @@ class Said(NamedTuple):
 
 
 def moving(spoken: Sequence[Tuple[str, float]]) -> Said:
-    """The motion of phonemes with their milliseconds."""
     pushed = [(label or "SIL", round(length)) for label, length in spoken]
     frames = np.asarray(labial.render(pushed, nearest=True, exact=True), dtype=np.int64)
     spans: Dict[str, List[Tuple[int, int]]] = {name: [] for name in (*_STOPS, *_LABIODENTALS)}

@@ -202,7 +202,6 @@ def nearest(seen: np.ndarray, models: np.ndarray) -> np.ndarray:
 
 
 def rows(stage: Stage, motion: Motion) -> List[str]:
-    """The table's rows of one head."""
     phonemes = timed(motion)
     tokens = []
     for sound, viseme in enumerate(SOUNDS.values()):
@@ -236,7 +235,6 @@ def rows(stage: Stage, motion: Motion) -> List[str]:
 
 
 def posed(kind: str) -> Dict[str, Dict[str, float]]:
-    """The weights of a rig in each sound of the sheet."""
     found: Dict[str, Dict[str, float]] = {}
     for text, marks in WORDS:
         lengths = [100 if VISEME_OF[label] in ("PP", "FF", "TH", "SS", "CH", "nn") else 200 for label in text.split()]

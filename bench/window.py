@@ -30,7 +30,6 @@ def motion(sentences: Path, runtime: str, output: Path) -> np.ndarray:
 
 
 def render(sentences: Path, output: Path) -> None:
-    """Writes the motion by the library that the environment names."""
     import labial
 
     lines = sentences.read_text(encoding="utf-8").splitlines()

@@ -12,7 +12,6 @@ void board_start(void);
 /* Called on any processor fault. Does not return. */
 void board_fault(void);
 
-/* Measures the cost of board_count_start() and board_count(). */
 void board_count_calibrate(void);
 
 static inline uint32_t *board_stack_pointer(void)

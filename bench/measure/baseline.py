@@ -14,7 +14,6 @@ TOLERANCE = 0.02
 
 
 def write(path: Path, figures: Sequence[Figure]) -> None:
-    """Writes figures as JSON, one a line."""
     lines = ",\n".join("  " + json.dumps(dataclasses.asdict(figure)) for figure in figures)
     path.write_text(f"[\n{lines}\n]\n", encoding="utf-8")
 

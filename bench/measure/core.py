@@ -45,8 +45,6 @@ class Figure:
 
 @dataclass
 class Bench:
-    """Paths, and the figures measured so far."""
-
     source: Path
     build: Path
     figures: List[Figure] = field(default_factory=list)

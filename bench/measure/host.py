@@ -53,7 +53,6 @@ def parse(line: str) -> Dict[str, float]:
 
 
 def checksums(bench: Bench) -> Dict[str, int]:
-    """The checksums of the boards' frames, by model."""
     program = bench.build / "bench" / "labial-bench"
     return {model: int(parse(run([program, model, str(SECONDS)]).stdout.decode())["checksum"]) for model in MODELS}
 

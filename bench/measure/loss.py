@@ -53,7 +53,6 @@ def delay(bench: Bench, corpus: Optional[str]) -> None:
 
 
 def environment(bench: Bench) -> Dict[str, str]:
-    """Variables of programs that use the exporter."""
     return dict(os.environ, PYTHONPATH=str(bench.source / "export"), OPENBLAS_NUM_THREADS="1")
 
 

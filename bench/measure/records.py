@@ -128,7 +128,6 @@ def read(root: Path) -> Dict[str, Dict[str, object]]:
 
 
 def write(root: Path, records: Mapping[str, Mapping[str, object]]) -> None:
-    """Writes the records, in the order of their names."""
     text = json.dumps(dict(sorted(records.items())), indent=2, ensure_ascii=False)
     (root / FILE).write_text(text + "\n", encoding="utf-8")
 

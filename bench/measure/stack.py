@@ -48,7 +48,6 @@ class CallGraph:
                 callees |= words
 
     def missing(self) -> Set[str]:
-        """Called functions whose frame is unknown."""
         return (set().union(*self.calls.values()) if self.calls else set()) - set(self.frames) - {_INDIRECT}
 
     def deepest(self, function: str, above: Tuple[str, ...] = ()) -> Tuple[int, Tuple[str, ...]]:

@@ -124,7 +124,6 @@ static void push(player_t *player, const conformance_step_t *step)
     feed(player);
 }
 
-/* Ends or cancels what was pushed. */
 static void finish(player_t *player, const conformance_step_t *step)
 {
     uint32_t left;
@@ -168,7 +167,6 @@ static uint32_t cancelled_at(const conformance_stream_t *script, unsigned i)
     return script->steps[i].kind == CONFORMANCE_CANCEL ? script->steps[i].value : UINT32_MAX;
 }
 
-/* Begins a part, with step `i` of the script. */
 static void begin_part(player_t *player, const conformance_stream_t *script, unsigned i)
 {
     player->take = player->frames;

@@ -191,7 +191,6 @@ def deviations(models: Dict[str, ExportedModel], scripts: Sequence[Script], fram
 
 
 def main() -> int:
-    """Runs the command; returns its exit status."""
     try:
         models = bundled_models()
         scripts = read(HERE / "streams.txt", models)

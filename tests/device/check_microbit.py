@@ -46,7 +46,6 @@ def limits(path: str) -> Dict[str, Dict[str, int]]:
 
 
 def main(script_path: str, face_path: str, command: List[str]) -> List[str]:
-    """What is wrong with what the firmware prints."""
     faults: List[str] = []
 
     def expect(holds: bool, what: str) -> None:

@@ -30,7 +30,6 @@ COMMAND = [0x7E, 0xFF, 0x06, 0x0F, 0x00, 0x01, 0x01, 0xFE, 0xEA, 0xEF]
 
 
 def constant(text: str, name: str) -> int:
-    """The number that a header defines."""
     return int(re.search(rf"#define {name} (\d+)", text)[1])
 
 
@@ -107,7 +106,6 @@ def judge_lips(wanted: List[int], lab: str) -> List[str]:
 
 
 def main(folder: Path, command: List[str]) -> List[str]:
-    """What is wrong."""
     text, times = ((folder / name).read_text(encoding="ascii") for name in ("talk.h", "dfplayer.h"))
     wanted, ready, delay = track(text), constant(times, "DFPLAYER_READY_MS"), constant(times, "DFPLAYER_DELAY_MS")
     end = PRESS + 2 * delay + 20 * len(wanted) + 500

@@ -29,7 +29,6 @@ int device_memory_is_whole(void);
 /* The stream of vectors.c with that name; the test fails if there is none. */
 const conformance_stream_t *device_stream(const char *name);
 
-/* Fails the test unless a result is the wanted one. */
 #define ASSERT_RESULT(wanted, result) TEST_ASSERT_EQUAL_INT32(wanted, result)
 
 /* Runs all device tests; returns 1 if one of them failed, else 0. */

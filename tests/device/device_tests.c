@@ -40,7 +40,6 @@ const conformance_stream_t *device_stream(const char *name)
     return &conformance_streams[0];
 }
 
-/* Unity calls these before and after each test. */
 void setUp(void)
 {
     device_memory_fill();

@@ -23,7 +23,6 @@ typedef struct {
     int checked;
 } fuzz_t;
 
-/* A tick, in which the outputs move or not. */
 static int move(fuzz_t *fuzz, int moves)
 {
     const int result = labial_face_tick(&fuzz->face, fuzz->values);

@@ -23,7 +23,6 @@
 
 static fixture_model_t speech, laugh, plain, slow, other_rate;
 
-/* What the stream must have become. */
 typedef struct {
     labial_t *stream;
     uint32_t next;       /* frame number that is due */

@@ -75,8 +75,6 @@ _FACTOR_MIN = 10
 
 @dataclass(frozen=True)
 class Mutant:
-    """A change of `old` to `new` at the character `start` of a file."""
-
     file: str
     start: int
     old: str
@@ -86,7 +84,6 @@ class Mutant:
     kind: str  #: one of KINDS
 
     def apply(self, source: str) -> str:
-        """The changed source."""
         return source[: self.start] + self.new + source[self.start + len(self.old) :]
 
 

@@ -80,8 +80,6 @@ def run(command: Sequence[object], **options: object) -> subprocess.CompletedPro
 
 
 class Trials:
-    """Runs tests on changed sources in a folder."""
-
     passing: Tuple[int, ...] = (0,)
 
     def environment(self, folder: Path) -> Dict[str, str]:
@@ -347,7 +345,6 @@ def tried(bench: Union[Bench, Packages], candidates: Sequence[Mutant], count: in
 
 
 def main() -> int:
-    """Runs the command; returns its exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="folder for what is built")
     parser.add_argument("--count", type=int, default=300, help="mutants (300)")

@@ -70,7 +70,6 @@ int prove_cost(void)
     return (int)labial_latency(OR_NULL(const labial_t *, &stream)).frames;
 }
 
-/* Any two arrays, or null. */
 int prove_faps(void)
 {
     int16_t faps[LABIAL_CHANNELS], expanded[LABIAL_FAPS_EXPANDED];
@@ -136,7 +135,6 @@ int prove_laugh(void)
     return 0;
 }
 
-/* Any number. */
 int prove_result(void)
 {
     return labial_result_text(any_int)[0];
@@ -281,7 +279,6 @@ static void select_among(int count, int knots)
     labial_shape_select(&shaped, &spoken, &selection);
 }
 
-/* Any frame. */
 static void take(void)
 {
     labial_taken_t taken;

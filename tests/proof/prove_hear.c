@@ -186,7 +186,6 @@ static int init(void)
     return labial_hear_init(&hear, &model, any_uint32, any_unsigned, workspace, any_size, on_frame, &touched);
 }
 
-/* Every call, in any state. */
 static void use(void)
 {
     static int16_t samples[8];

@@ -153,7 +153,6 @@ static void set_model(unsigned units, unsigned count, unsigned ahead, unsigned r
     network.rows = LAST(workspace, rows * units);
 }
 
-/* A frame, and those before it. */
 static void take(void)
 {
     const int16_t *heads;
@@ -167,7 +166,6 @@ static void take(void)
         any_int = heads[0] + heads[26 + LABIAL_CHANNELS];
 }
 
-/* Any number of classes. */
 static void pose(void)
 {
     int16_t heads[LABIAL_HEAR_CLASSES_MAX + 1 + LABIAL_CHANNELS], found[LABIAL_CHANNELS];

@@ -41,14 +41,11 @@ Faps = Tuple[int, ...]
 
 
 class Shown(NamedTuple):
-    """A frame with its number."""
-
     number: int
     faps: Faps
 
 
 def sessions(path: Path) -> List[Dict[str, Any]]:
-    """The sessions of ``sessions.json``."""
     found: List[Dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["sessions"]
     return found
 
@@ -193,7 +190,6 @@ class Oracle:
         return [(begin, end, label) for begin, end, (label, _) in zip([0, *ends], ends, timings) if label != "SIL"]
 
     def ends(self) -> List[int]:
-        """Where each utterance ends."""
         return [one["origin"] + max([one["end"], *(end for _, end, _ in self.spoken(one))]) for one in self.utterances]
 
     def from_time(self, start: int) -> Plan:
@@ -216,7 +212,6 @@ class Oracle:
     # ---- Frames
 
     def played(self, time: Optional[float]) -> List[Shown]:
-        """The frames that are due."""
         due = -1 if time is None or time < 0 else math.floor(time * 50 + 1e-6)
         late = due - self.next >= 50
         if late:

@@ -30,7 +30,6 @@ def _plays(first: float, last: float, step: float = FRAME) -> List[Any]:
 
 
 def _sample(name: str) -> List[List[Any]]:
-    """The messages of a sample of a service."""
     return [["feed", message] for sample in SAMPLES if sample["name"] == name for message in sample["messages"]]
 
 
@@ -213,7 +212,6 @@ def frames_text(shown: Mapping[str, Sequence[Optional[Sequence[Shown]]]]) -> str
 
 
 def main() -> None:
-    """Writes the files."""
     found, every = [], {}
     for name, session in SESSIONS.items():
         oracle = Oracle(session.get("options", {}))
