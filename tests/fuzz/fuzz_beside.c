@@ -32,57 +32,49 @@ static void feed(labial_beside_t *player, const uint8_t *data, size_t size, unsi
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    input_t input = { data, size };
+    const unsigned some = number(&input, 1), outputs = some ? some : 1u;
+    const unsigned room = number(&input, 1), frames = room ? room : 1u;
+    const uint32_t rate = 1u + number(&input, 1) * 1009u, bytes = (uint32_t)LABIAL_BESIDE_SIZE(outputs, frames);
     labial_beside_t *player = (labial_beside_t *)memory_of(sizeof *player);
-    unsigned outputs, frames;
-    uint32_t sample = 0, rate;
-    uint8_t *memory, *values, *last;
+    uint8_t *memory = (uint8_t *)memory_of(bytes), *values = (uint8_t *)memory_of(outputs);
+    uint8_t *last = (uint8_t *)memory_of(outputs);
     int moves = 0; /* `last` is known */
-    outputs = size > 2 && data[0] ? data[0] : 1u;
-    frames = size > 2 && data[1] ? data[1] : 1u;
-    rate = size > 2 ? 1u + data[2] * 1009u : 1u;
-    memory = (uint8_t *)memory_of(LABIAL_BESIDE_SIZE(outputs, frames));
-    values = (uint8_t *)memory_of(outputs);
-    last = (uint8_t *)memory_of(outputs);
     memset(player, 0x5a, sizeof *player);
-    REQUIRE(labial_beside_init(player, outputs, rate, memory, LABIAL_BESIDE_SIZE(outputs, frames)) == 0);
-    for (frames = 0; frames < outputs; frames++)
-        REQUIRE(labial_beside_limit(player, frames, 1u + (rate + frames * 37u) % 255u) == 0);
-    data += size > 2 ? 3 : size;
-    size -= size > 2 ? 3 : size;
-    while (size >= 5) {
-        const unsigned call = data[0] & 3u;
+    REQUIRE(labial_beside_init(player, outputs, rate, memory, bytes) == 0);
+    for (unsigned i = 0; i < outputs; i++)
+        REQUIRE(labial_beside_limit(player, i, 1u + (rate + i * 37u) % 255u) == 0);
+    while (input.left >= 5) {
+        const unsigned first = number(&input, 1), call = first & 3u;
         if (call == AT) {
             const unsigned wait = player->quiet == LABIAL_BESIDE_HOLD + 1 ? player->left : 0;
+            uint32_t sample;
             int result;
-            memcpy(&sample, data + 1, sizeof sample);
+            take(&input, &sample, sizeof sample);
             memset(values, 0xa5, outputs);
             result = labial_beside_tick(player, sample, values);
             REQUIRE(result == (player->known ? result & LABIAL_STARVED : LABIAL_ERROR_STATE));
             REQUIRE(player->quiet <= LABIAL_BESIDE_HOLD + 1 && player->left >= 1 && player->left <= LABIAL_CANCEL_MAX);
-            for (frames = 0; frames < outputs && player->known; frames++) {
-                const int most = 1 + (int)((rate + frames * 37u) % 255u), moved = values[frames] - last[frames];
+            for (unsigned i = 0; i < outputs && player->known; i++) {
+                const int most = 1 + (int)((rate + i * 37u) % 255u), moved = values[i] - last[i];
                 REQUIRE(!moves || (moved <= most && moved >= -most));
                 if (player->quiet == LABIAL_BESIDE_HOLD + 1 && wait == 1) {
-                    const int left = memory[frames] - values[frames];
+                    const int left = memory[i] - values[i];
                     REQUIRE(left == 0 || !moves || moved == (left > 0 ? most : -most));
                 }
             }
             moves = player->known > 0;
             if (moves)
                 memcpy(last, values, outputs);
-            data += 5;
-            size -= 5;
         } else if (call == CANCEL) {
-            REQUIRE((data[0] & 64u ? labial_beside_restart(player, rate)
-                                   : labial_beside_cancel(player, data[0] * data[0] * 10u)) == LABIAL_OK);
-            data++;
-            size--;
+            REQUIRE((first & 64u ? labial_beside_restart(player, rate)
+                                 : labial_beside_cancel(player, first * first * 10u)) == LABIAL_OK);
         } else {
-            const size_t wanted = data[1] | (data[2] & 3u) << 8;
-            const size_t taken = wanted < size - 3u ? wanted : size - 3u;
-            feed(player, data + 3, taken, outputs, call == FEED_MENDED);
-            data += 3 + taken;
-            size -= 3 + taken;
+            const size_t low = number(&input, 1), wanted = low | (number(&input, 1) & 3u) << 8;
+            const size_t taken = wanted < input.left ? wanted : input.left;
+            feed(player, input.at, taken, outputs, call == FEED_MENDED);
+            input.at += taken;
+            input.left -= taken;
         }
     }
     free(last);

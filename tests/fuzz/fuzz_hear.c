@@ -31,28 +31,22 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     told_t told = { 0, 0 };
     labial_hear_t *hear = (labial_hear_t *)memory_of(sizeof *hear);
     void *workspace = memory_of(HEAR_FIXTURE_WORKSPACE_SIZE);
-    uint32_t rate, channels, heard = 0, before = 0;
-    int result, ended = 0, exact;
+    input_t input = { data, size };
+    const unsigned head = number(&input, 1);
+    const uint32_t rate = rates[head & 7u], channels = 1u + (head >> 3 & 1u);
+    const int exact = (head & 16u) != 0;
+    uint32_t heard = 0, before = 0;
+    int result, ended = 0;
     memset(hear, 0xa5, sizeof *hear);
     memset(workspace, 0x5a, HEAR_FIXTURE_WORKSPACE_SIZE);
-    if (size < 2)
-        size = 0;
-    rate = size ? rates[data[0] & 7u] : 16000;
-    channels = size ? 1u + (data[0] >> 3 & 1u) : 1;
-    exact = size && (data[0] & 16u);
     result =
         labial_hear_init(hear, &hear_fixture, rate, channels, workspace, HEAR_FIXTURE_WORKSPACE_SIZE, on_frame, &told);
     REQUIRE(result == LABIAL_OK && labial_hear_classes(hear, on_class) == LABIAL_OK);
     REQUIRE(labial_hear_exact(hear, exact) == LABIAL_OK);
-    if (size)
-        data++, size--;
-    while (size >= 2) {
+    while (input.left >= 2) {
         /* A call, and for a push how many bytes: they are heard as often as the call's upper bits say. */
-        const unsigned call = data[0] & 7u, again = data[0] >> 3;
-        size_t bytes = data[1];
-        unsigned i;
-        data += 2;
-        size -= 2;
+        const unsigned first = number(&input, 1), call = first & 7u, again = first >> 3;
+        size_t bytes = number(&input, 1);
         if (call == 5u) {
             const uint32_t frames = (uint32_t)(((uint64_t)heard * 50u + rate - 1u) / rate);
             const uint32_t left = labial_hear_latency(hear).frames;
@@ -78,15 +72,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         } else {
             int16_t *samples;
             const size_t pair = 2u * channels;
-            bytes = (bytes < size ? bytes : size) / pair * pair;
-            samples = (int16_t *)copy_of(data, bytes);
-            for (i = 0; i <= again; i++) {
+            bytes = (bytes < input.left ? bytes : input.left) / pair * pair;
+            samples = (int16_t *)copy_of(input.at, bytes);
+            for (unsigned i = 0; i <= again; i++) {
                 REQUIRE(labial_hear_push(hear, samples, bytes / pair) == (ended ? LABIAL_ERROR_STATE : LABIAL_OK));
                 heard += ended ? 0 : (uint32_t)(bytes / pair);
             }
             free(samples);
-            data += bytes;
-            size -= bytes;
+            input.at += bytes;
+            input.left -= bytes;
         }
     }
     free(workspace);
