@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Callable, Dict, List
 
 from measure import baseline, boards, figures, hearing, host, loss, mlpg, pages, profile, sizes, stack, table
-from measure.core import Bench, Figure, LeftOut
+from measure.core import Bench, LeftOut
 
 
 def _options() -> argparse.Namespace:
@@ -82,17 +82,12 @@ def _check(bench: Bench, path: Path, require_all: bool) -> bool:
               f"{len(bench.figures)} figures. If that is meant: python3 bench/bench.py --update")
     elif not passed_over:
         print("No figure is worse than bench/baseline.json.")
-    return not _outdated(bench.source, bench.figures) and not worse and not (require_all and passed_over)
-
-
-def _outdated(source: Path, measured: List[Figure]) -> bool:
-    """Prints the figures of pages that are not those measured now; returns whether there are any."""
-    complaints = pages.refresh(source, figures.of(source, measured), write=False)
-    for sentence in complaints:
+    outdated = pages.refresh(bench.source, figures.of(bench.source, bench.figures), write=False)
+    for sentence in outdated:
         print(sentence)
-    if complaints:
+    if outdated:
         print("To write what was measured into bench/baseline.json and the pages: python3 bench/bench.py --update")
-    return bool(complaints)
+    return not outdated and not worse and not (require_all and passed_over)
 
 
 def main() -> int:

@@ -37,18 +37,6 @@ static void rows(const bench_unit_t *unit, unsigned k, unsigned t, double mean[W
     mean[2] = labial_scaled(state->motion[1], model->channels[k].motion_scale[1]);
 }
 
-static void fill(bench_unit_t *unit)
-{
-    bench_unit_t one;
-    for (unsigned k = 0; k < BENCH_CHANNELS; k++) {
-        bench_unit_fill(&one, model, k);
-        for (unsigned t = 0; t < BENCH_UNIT; t++) {
-            unit[k].path[t] = one.path[t];
-            unit[k].targets[t] = one.targets[t];
-        }
-    }
-}
-
 #ifdef BENCH_HTS
 #include <HTS_engine.h>
 
@@ -175,7 +163,8 @@ int main(int argc, char **argv)
             printf("memory: %u bytes\n", (unsigned)(BENCH_CHANNELS * BENCH_MEMORY));
             return 0;
         }
-        fill(unit);
+        for (unsigned k = 0; k < BENCH_CHANNELS; k++)
+            bench_unit_fill(&unit[k], model, k);
         if (strcmp(argv[1], "labial") == 0) {
             labial_solve(unit, (unsigned long)count);
             return 0;

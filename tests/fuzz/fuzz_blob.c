@@ -32,9 +32,10 @@ static void play(const labial_model_t *model, uint32_t seed)
     fixture_close(&host);
 }
 
-/* A sound model as a binary one, made when it is first asked for; returns its size. */
-static size_t sound_model(unsigned choice, const uint8_t **bytes)
+/* Replaces bytes of a sound model, made when it is first asked for: two of position, one of value. Returns its size. */
+static size_t patch(uint8_t *out, unsigned choice, const uint8_t *data, size_t size)
 {
+    size_t length;
     static uint8_t made[SOUND][ROOM];
     static size_t lengths[SOUND];
     static fixture_model_t small[3];
@@ -49,16 +50,8 @@ static size_t sound_model(unsigned choice, const uint8_t **bytes)
             REQUIRE(lengths[i] <= ROOM);
         }
     }
-    *bytes = made[choice % SOUND];
-    return lengths[choice % SOUND];
-}
-
-/* Replaces bytes of a sound model: two of position, one of value. Returns the model's size. */
-static size_t patch(uint8_t *out, unsigned choice, const uint8_t *data, size_t size)
-{
-    const uint8_t *sound;
-    const size_t length = sound_model(choice, &sound);
-    memcpy(out, sound, length);
+    length = lengths[choice % SOUND];
+    memcpy(out, made[choice % SOUND], length);
     for (; size >= 3; data += 3, size -= 3)
         out[12 + (data[0] | (size_t)data[1] << 8) % (length - 12)] = data[2];
     fixture_seal(out, length);
