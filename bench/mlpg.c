@@ -124,14 +124,6 @@ static int compare(bench_unit_t *unit)
 }
 #endif
 
-static void labial_solve(const bench_unit_t *unit, unsigned long count)
-{
-    static int16_t motion[BENCH_HOLD];
-    while (count-- > 0)
-        for (unsigned k = 0; k < BENCH_CHANNELS; k++)
-            bench_unit_solve(&unit[k], model, k, motion);
-}
-
 static void sptk_write(const bench_unit_t *unit, unsigned long count)
 {
     while (count-- > 0)
@@ -152,6 +144,7 @@ static void sptk_write(const bench_unit_t *unit, unsigned long count)
 int main(int argc, char **argv)
 {
     static bench_unit_t unit[BENCH_CHANNELS];
+    static int16_t motion[BENCH_HOLD];
     const long count = argc == 3 ? atol(argv[2]) : 0;
     if (count > 0) {
         if (strcmp(argv[1], "about") == 0) {
@@ -166,7 +159,9 @@ int main(int argc, char **argv)
         for (unsigned k = 0; k < BENCH_CHANNELS; k++)
             bench_unit_fill(&unit[k], model, k);
         if (strcmp(argv[1], "labial") == 0) {
-            labial_solve(unit, (unsigned long)count);
+            for (long i = 0; i < count; i++)
+                for (unsigned k = 0; k < BENCH_CHANNELS; k++)
+                    bench_unit_solve(&unit[k], model, k, motion);
             return 0;
         }
         if (strcmp(argv[1], "sptk") == 0) {

@@ -88,13 +88,6 @@ static int goes_on(const player_t *player)
     return !player->complaint && !is_cut(player);
 }
 
-/* Ticks before a push of the real-time feed, until the phoneme begins. */
-static void wait_for_phoneme(player_t *player)
-{
-    while (goes_on(player) && player->ticks < player->pushed * speech_en.frames_per_second / 1000u)
-        tick(player);
-}
-
 /* Ticks before a push, as the feed demands, until there is room. */
 static void make_room(player_t *player)
 {
@@ -103,8 +96,9 @@ static void make_room(player_t *player)
     if (player->feed == CONFORMANCE_HUNGRY)
         while (goes_on(player) && !starves(player))
             tick(player);
-    if (player->feed == CONFORMANCE_REAL_TIME)
-        wait_for_phoneme(player);
+    if (player->feed == CONFORMANCE_REAL_TIME) /* until the phoneme begins */
+        while (goes_on(player) && player->ticks < player->pushed * speech_en.frames_per_second / 1000u)
+            tick(player);
     while (goes_on(player) && labial_room(player->stream) == 0) {
         tick(player);
         if (starves(player))
@@ -159,18 +153,13 @@ static void drain(player_t *player)
     } while (!player->complaint && player->last != LABIAL_DONE);
 }
 
-/* After how many frames the part that begins with step `i` is cancelled. */
-static uint32_t cancelled_at(const conformance_stream_t *script, unsigned i)
-{
-    while (script->steps[i].kind == CONFORMANCE_PUSH || script->steps[i].kind == CONFORMANCE_ARTICULATION)
-        i++;
-    return script->steps[i].kind == CONFORMANCE_CANCEL ? script->steps[i].value : UINT32_MAX;
-}
-
 static void begin_part(player_t *player, const conformance_stream_t *script, unsigned i)
 {
+    const conformance_step_t *last = &script->steps[i];
+    while (last->kind == CONFORMANCE_PUSH || last->kind == CONFORMANCE_ARTICULATION)
+        last++;
     player->take = player->frames;
-    player->cancel_at = cancelled_at(script, i);
+    player->cancel_at = last->kind == CONFORMANCE_CANCEL ? last->value : UINT32_MAX;
     player->ticks = player->pushed = 0;
     player->idle = 0;
     player->last = LABIAL_WAITING;

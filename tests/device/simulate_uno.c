@@ -58,14 +58,6 @@ static avr_timer_t *timer_1(void)
     return NULL;
 }
 
-static void silence_console(void)
-{
-    uint32_t flags = 0;
-    avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0'), &flags);
-    flags &= ~(uint32_t)AVR_UART_FLAG_STDIO;
-    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
-}
-
 static int pressed(uint64_t milliseconds, char **times, int count)
 {
     for (int i = 0; i < count; i++) {
@@ -79,6 +71,7 @@ static int pressed(uint64_t milliseconds, char **times, int count)
 int main(int argc, char **argv)
 {
     elf_firmware_t image = { 0 };
+    uint32_t flags = 0;
     int was_pressed = 0;
     if (argc < 3 || elf_read_firmware(argv[1], &image) != 0) {
         fprintf(stderr, "usage: simulate_uno IMAGE.elf MILLISECONDS [MILLISECONDS_OF_PRESS...]\n");
@@ -95,7 +88,9 @@ int main(int argc, char **argv)
     timer = timer_1();
     if (!timer)
         return 2;
-    silence_console();
+    avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0'), &flags);
+    flags &= ~(uint32_t)AVR_UART_FLAG_STDIO; /* the console says nothing */
+    avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), 1), on_pin, NULL);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
     avr_irq_register_notify(timer->io.irq + TIMER_IRQ_OUT_PWM0, on_compare_register, NULL);
