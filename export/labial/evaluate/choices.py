@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
@@ -168,14 +168,11 @@ CHOICES: Dict[str, Tuple[Choice, ...]] = {
 @contextmanager
 def _made(choice: Choice) -> Iterator[None]:
     """Applies the choice's replacements within the block."""
-    kept = {(module, name): getattr(module, name) for module, name in choice.replaced}
-    try:
+    with ExitStack() as stack:
         for (module, name), value in choice.replaced.items():
+            stack.callback(setattr, module, name, getattr(module, name))
             setattr(module, name, value)
         yield
-    finally:
-        for (module, name), value in kept.items():
-            setattr(module, name, value)
 
 
 def _motion(choice: Choice, training: Training, timelines: Sequence[Timeline]) -> List[np.ndarray]:

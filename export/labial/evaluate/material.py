@@ -70,12 +70,16 @@ class Utterance:
         wanted = set(words)
         return np.array([word in wanted for word in self.words], dtype=bool)[self.timeline.segment_at]
 
+    def holds(self, words: Iterable[str]) -> bool:
+        """Whether one of `words` is said."""
+        return not set(words).isdisjoint(self.words)
+
     def longest_word(self, silence: int, words: Optional[Iterable[str]] = None) -> Optional[Tuple[int, int]]:
         """First and last segment of the word with the most phonemes, the first of equals, among `words` if given."""
-        wanted = None if words is None else set(words)
+        wanted = set(self.words if words is None else words) - {None}
         runs: List[List[int]] = []
         for index, word in enumerate(self.words):
-            if word is None or self.timeline.phoneme[index] == silence or (wanted is not None and word not in wanted):
+            if word not in wanted or self.timeline.phoneme[index] == silence:
                 continue
             if runs and runs[-1][-1] == index - 1 and self.words[index - 1] == word:
                 runs[-1].append(index)
@@ -185,7 +189,7 @@ class Outcome:
     example: Optional[Example] = None
 
 
-def _draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
+def draw(candidates: np.ndarray, seed: int, number: int) -> np.ndarray:
     """A random TRAINING_SHARE of `candidates`, ascending, at least one and not all of them where there are two."""
     rng = np.random.default_rng([seed, number])
     count = min(max(round(TRAINING_SHARE * len(candidates)), 1), max(len(candidates) - 1, 1))
@@ -200,20 +204,19 @@ def make_splits(corpus: Sequence[Utterance], count: int, seed: int, held_out: Se
     if not held_out:
         if len(corpus) < 2:
             raise LabialError("an evaluation needs two episodes or more")
-        chosen = [_draw(everyone, seed, number) for number in range(count)]
-        rest = [np.setdiff1d(everyone, training) for training in chosen]
-        return [Split(n, tuple(map(int, a)), tuple(map(int, b))) for n, (a, b) in enumerate(zip(chosen, rest))]
+        chosen = [draw(everyone, seed, number) for number in range(count)]
+        return [Split(number, tuple(own.tolist()), tuple(np.setdiff1d(everyone, own).tolist()))
+                for number, own in enumerate(chosen)]
     words = tuple(sorted(set(held_out)))
     known = {word for item in corpus for word in item.words}
     missing = [word for word in words if word not in known]
     if missing:
         raise LabialError(f"no episode holds the words {', '.join(missing)}")
-    contains = np.array([not set(words).isdisjoint(item.words) for item in corpus])
+    contains = np.array([item.holds(words) for item in corpus])
     if contains.all():
         raise LabialError("every episode holds one of the words to hold out; nothing is left to train on")
-    test = tuple(int(index) for index in everyone[contains])
-    return [Split(n, tuple(int(index) for index in _draw(everyone[~contains], seed, n)), test, words)
-            for n in range(count)]
+    test, rest = tuple(everyone[contains].tolist()), everyone[~contains]
+    return [Split(number, tuple(draw(rest, seed, number).tolist()), test, words) for number in range(count)]
 
 
 def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:

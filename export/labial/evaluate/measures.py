@@ -4,7 +4,7 @@ it is judged)."""
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -41,11 +41,6 @@ def silence_of(phone_set: PhoneSet) -> int:
     return phone_set.phonemes.index(phone_set.silence)
 
 
-def _closing(phone_set: PhoneSet) -> np.ndarray:
-    """(P,) bool: phonemes that close the lips."""
-    return np.array([phone_set.classes[c] in CLOSED_CLASSES for c in phone_set.viseme_class], dtype=bool)
-
-
 def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
     """The grouping of errors: its name, the groups' names, and each phoneme's group (P,). Viseme classes for speech;
     the phonemes themselves for laughter, which has few."""
@@ -57,7 +52,8 @@ def groups(phone_set: PhoneSet) -> Tuple[str, Tuple[str, ...], np.ndarray]:
 def least_openness(item: Utterance, frames: np.ndarray, mask: np.ndarray, phone_set: PhoneSet, fps: int) -> np.ndarray:
     """(n,) FAP: the least openness within CLOSURE_REACH of each phoneme that closes the lips and has a judged frame."""
     openness = labial_parameters(frames)[:, 0]
-    reach, given, closing = round(CLOSURE_REACH * fps), item.timeline, _closing(phone_set)
+    reach, given = round(CLOSURE_REACH * fps), item.timeline
+    closing = np.array([phone_set.classes[c] in CLOSED_CLASSES for c in phone_set.viseme_class], dtype=bool)
     found = []
     for segment in given.held[closing[given.phoneme[given.held]]]:
         begin = int(given.start[segment])
@@ -72,11 +68,9 @@ def measure_scale(training: Sequence[Utterance], phone_set: PhoneSet, fps: int) 
     silence = silence_of(phone_set)
     masks = [item.timeline.phoneme_at != silence for item in training]
     speech = np.concatenate([labial_parameters(item.human)[mask] for item, mask in zip(training, masks)])
-    least = np.concatenate(
-        [least_openness(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
-    )
-    risen = [rises(item, item.human, mask, phone_set, fps) for item, mask in zip(training, masks)]
-    pulses = np.concatenate(risen) if has_pulses(phone_set) else np.zeros(0)
+    least, risen = (np.concatenate([found(item, item.human, mask, phone_set, fps)
+                                    for item, mask in zip(training, masks)]) for found in (least_openness, rises))
+    pulses = risen if has_pulses(phone_set) else risen[:0]
     return Scale(maximum=np.maximum(np.abs(speech).max(axis=0), 1e-9),
                  closed=float(np.percentile(speech[:, 0], CLOSED_PERCENTILE)),
                  firm=float(np.percentile(least, FIRM_PERCENTILE)) if len(least) else float("nan"),
@@ -100,7 +94,8 @@ class Judge:
         self._human = self._pooled([item.human for item in test])
         self._grouping, self._groups, group_of = groups(phone_set)
         self._group_at = np.concatenate([group_of[item.timeline.phoneme_at][mask] for item, mask in zip(test, masks)])
-        self._joins = [self._unit_joins(item) for item in test]
+        self._at_joins = np.concatenate([self._unit_joins(item)[_throughout(mask, 3)]
+                                         for item, mask in zip(test, masks)])
         self._human_jerk = self._jerk([item.human for item in test])
 
     @property
@@ -118,54 +113,43 @@ class Judge:
         cut = pieces([int(count) for count in given.length], boundary, JOINED_FRAMES)
         return joins([piece.begin for piece in cut[1:]], [piece.fade_in for piece in cut[1:]], given.frames)
 
+    def _differences(self, motion: Sequence[np.ndarray], order: int) -> np.ndarray:
+        """(n, 4) differences of the judged channels over the windows that are judged throughout."""
+        return np.concatenate([differences(f[:, JUDGED], mask, order) for f, mask in zip(motion, self._masks)])
+
     def _jerk(self, motion: Sequence[np.ndarray]) -> np.ndarray:
         """(4,) RMS third difference of the judged channels, FAP per frame cubed."""
-        third = np.concatenate([differences(f[:, JUDGED], mask, 3) for f, mask in zip(motion, self._masks)])
+        third = self._differences(motion, 3)
         return np.sqrt((third**2).mean(axis=0)) if len(third) else np.full(len(JUDGED), np.nan)
 
     def _seams(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
-        at, away = [], []
-        for frames, mask, touched in zip(motion, self._masks, self._joins):
-            if len(frames) < 3:
-                continue
-            size = np.abs(np.diff(frames[:, JUDGED], n=2, axis=0))
-            judged = np.lib.stride_tricks.sliding_window_view(mask, 3).all(axis=1)
-            at.append(size[judged & touched])
-            away.append(size[judged & ~touched])
-        here = np.concatenate(at) if at else np.zeros((0, len(JUDGED)))
-        there = np.concatenate(away) if away else np.zeros((0, len(JUDGED)))
+        size = np.abs(self._differences(motion, 2))
+        here, there = size[self._at_joins], size[~self._at_joins]
         if not len(here) or not len(there):
             return {"seam/mean": float("nan"), "seam/largest": float("nan")}
         return {"seam/mean": _mean_ratio(here.mean(axis=0), there.mean(axis=0)),
                 "seam/largest": _mean_ratio(here.max(axis=0), there.max(axis=0))}
 
-    def _closure(self, motion: Sequence[np.ndarray]) -> np.ndarray:
-        """(2,) share of the phonemes that close the lips where they do, and do so firmly."""
-        least = [least_openness(item, frames, mask, self._phone_set, self._fps)
-                 for item, frames, mask in zip(self._test, motion, self._masks)]
-        found = np.concatenate(least) if least else np.zeros(0)
-        if not len(found):
-            return np.full(2, np.nan)
-        return np.array([(found < self._scale.closed).mean(), (found < self._scale.firm).mean()])
+    def _both(self, found: Callable[..., np.ndarray], motion: Sequence[np.ndarray]) -> List[np.ndarray]:
+        """What `least_openness` or `rises` is in the whole test part: in `motion`, and in the human's."""
+        return [np.concatenate([found(item, frames, mask, self._phone_set, self._fps)
+                                for item, frames, mask in zip(self._test, made, self._masks)])
+                for made in (motion, [item.human for item in self._test])]
 
     def _closures(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
-        closed, by_human = self._closure(motion), self._closure([item.human for item in self._test])
+        """Share of the phonemes that close the lips where they do, and do so firmly; its ratio to the human's."""
+        found = self._both(least_openness, motion)
         result: Dict[str, float] = {}
         names = ("closure",) if self._pulsing else ("closure", "firm closure")  # laughter does not press lips
-        for name, own, reference in zip(names, closed, by_human):
-            result[f"{name}/rate"] = float(own)
-            result[f"{name}/of human"] = float(own / reference) if reference > 0 else float("nan")
+        for name, limit in zip(names, (self._scale.closed, self._scale.firm)):
+            own, human = (float((least < limit).mean()) if len(least) else float("nan") for least in found)
+            result[f"{name}/rate"] = own
+            result[f"{name}/of human"] = own / human if human > 0 else float("nan")
         return result
-
-    def _rises(self, motion: Sequence[np.ndarray]) -> np.ndarray:
-        return np.concatenate(
-            [rises(item, frames, mask, self._phone_set, self._fps)
-             for item, frames, mask in zip(self._test, motion, self._masks)]
-        )
 
     def _pulses(self, motion: Sequence[np.ndarray]) -> Dict[str, float]:
         """Share of visible pulses, its ratio to the human's, and the mean rise over the human's."""
-        own, human = self._rises(motion), self._rises([item.human for item in self._test])
+        own, human = self._both(rises, motion)
         if not len(own):
             return {}
         seen, by_human = float((own > self._scale.pulse).mean()), float((human > self._scale.pulse).mean())
@@ -252,12 +236,16 @@ def amplitude(human: np.ndarray, motion: np.ndarray) -> np.ndarray:
     return np.where(moves, motion.std(axis=0) / np.where(moves, spread, 1.0), np.nan)
 
 
+def _throughout(mask: np.ndarray, length: int) -> np.ndarray:
+    """(T - length + 1,) bool: the windows of `length` frames in which `mask` (T,) is true throughout."""
+    if len(mask) < length:
+        return np.zeros(0, dtype=bool)
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(mask, length).all(axis=1))
+
+
 def differences(frames: np.ndarray, mask: np.ndarray, order: int) -> np.ndarray:
     """(n, K) differences of this order over every window of order + 1 frames that is judged throughout."""
-    if len(frames) <= order:
-        return np.zeros((0, frames.shape[1]))
-    whole = np.lib.stride_tricks.sliding_window_view(mask, order + 1).all(axis=1)
-    return np.diff(frames, n=order, axis=0)[whole]
+    return np.diff(frames, n=order, axis=0)[_throughout(mask, order + 1)]
 
 
 def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
@@ -267,9 +255,7 @@ def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
     touched = np.zeros(max(frames - 2, 0), dtype=bool)
     for first, count in zip(begin, fade):
         for edge in (first, first + count):
-            for t in (edge - 2, edge - 1):
-                if 0 <= t < len(touched):
-                    touched[t] = True
+            touched[max(edge - 2, 0) : max(edge, 0)] = True
     return touched
 
 

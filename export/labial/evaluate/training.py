@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple, TypeVar
+from typing import Callable, Dict, List, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
 
 from labial.corpus.episode import Episode
 from labial.corpus.phonesets import PhoneSet
-from labial.evaluate.material import Timeline, Utterance
+from labial.evaluate.material import Timeline, Utterance, draw
 from labial.evaluate.measures import Scale, judged_frames, mean_difference, measure_scale, silence_of
 from labial.tables.model import Model
 from labial.train import train
 from labial.train.codebook import lbg
 
-#: Share of the training part that inner validation fits on; the rest chooses the settings.
-INNER_SHARE = 0.8
 #: If unseen words are judged, inner validation holds out words, too, in several folds, since few words are not enough:
 #: in each fold until so many episodes contain one of them. It does not hold out words in more episodes than
 #: COMMON_SHARE, which would leave too little to fit on.
@@ -27,30 +25,24 @@ WORD_SHARE = 0.3
 COMMON_SHARE = 0.15
 
 Setting = TypeVar("Setting")
-
-
 #: A fitted method: (T, 13) FAP for the timeline of T frames.
 Predictor = Callable[[Timeline], np.ndarray]
 
 
+@dataclass(eq=False)
 class Training:
     """A training part: utterances, and models that are trained on them on first use. `unseen_words` says that the
     fitted methods will be judged on words that the part does not contain, so that settings must be chosen on such
     words, too. `added` episodes of further corpora are used only for Labial's models: other methods have no weights."""
 
-    def __init__(self, utterances: Sequence[Utterance], phone_set: PhoneSet, fps: int, seed: int,
-                 unseen_words: bool = False, added: Sequence[Episode] = (),
-                 talker_variance: Optional[float] = None) -> None:
-        self.added = list(added)
-        self.talker_variance = talker_variance
-        self.unseen_words = unseen_words
-        self.utterances = list(utterances)
-        self.phone_set = phone_set
-        self.fps = fps
-        self.seed = seed
-        self._models: Dict[Tuple[str, bool], Model] = {}
-        self._derived: Dict[object, object] = {}
-        self._cells: Dict[Tuple[int, bytes], Tuple[np.ndarray, np.ndarray, float]] = {}
+    utterances: Sequence[Utterance]
+    phone_set: PhoneSet
+    fps: int
+    seed: int
+    unseen_words: bool = False
+    added: Sequence[Episode] = ()
+    talker_variance: Optional[float] = None
+    _derived: Dict[object, object] = field(default_factory=dict, init=False)
 
     @property
     def silence(self) -> int:
@@ -65,21 +57,23 @@ class Training:
     @cached_property
     def folds(self) -> List[Fold]:
         """Inner validation, from this part alone: one random fold, or WORD_FOLDS of unseen words."""
-        by_word = [self._without_words(words) for words in self._word_draws()]
-        return by_word or [self._random_fold()]
+        by_word = [self._fold([not item.holds(words) for item in self.utterances], words)
+                   for words in self._word_draws()]
+        every = np.arange(len(self.utterances))
+        return by_word or [self._fold(np.isin(every, draw(every, self.seed, 1)).tolist(), ())]
 
-    def _random_fold(self) -> Fold:
-        order = np.random.default_rng([self.seed, 1]).permutation(len(self.utterances))
-        count = min(max(round(INNER_SHARE * len(order)), 1), max(len(order) - 1, 1))
-        fit = [self.utterances[index] for index in sorted(order[:count])]
-        rest = [self.utterances[index] for index in sorted(order[count:])]
-        return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest or fit, ())
+    def _fold(self, fits: Sequence[bool], words: Tuple[str, ...]) -> Fold:
+        """Fits on the utterances of which `fits` says so; the others choose the settings."""
+        fit = [item for item, own in zip(self.utterances, fits) if own]
+        rest = [item for item, own in zip(self.utterances, fits) if not own]
+        return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest or fit, words)
 
     def _word_draws(self) -> List[Tuple[str, ...]]:
         """The words of each fold, random ones, none in two folds; empty unless unseen words are to be judged."""
         if not self.unseen_words:
             return []
-        holds = [_spoken_words(item, self.silence) for item in self.utterances]
+        holds = [{word for word, phoneme in zip(item.words, item.timeline.phoneme)
+                  if word is not None and phoneme != self.silence} for item in self.utterances]
         known = sorted(set().union(*holds))
         rare = [word for word in known if sum(word in held for held in holds) <= COMMON_SHARE * len(holds)]
         left = [rare[index] for index in np.random.default_rng([self.seed, 2]).permutation(len(rare))]
@@ -92,28 +86,18 @@ class Training:
                 chosen = []
         return draws
 
-    def _without_words(self, words: Tuple[str, ...]) -> Fold:
-        with_word = [not set(words).isdisjoint(item.words) for item in self.utterances]
-        fit = [item for item, held in zip(self.utterances, with_word) if not held]
-        rest = [item for item, held in zip(self.utterances, with_word) if held]
-        return Fold(Training(fit, self.phone_set, self.fps, self.seed), rest, words)
-
     def divide(self, points: np.ndarray, size: int) -> Tuple[np.ndarray, np.ndarray, float]:
         """The result of :func:`lbg`, cached for the same points: the methods' codebooks share their cells."""
-        key = (size, hashlib.sha256(np.ascontiguousarray(points).tobytes()).digest())
-        if key not in self._cells:
-            self._cells[key] = lbg(points, size)
-        return self._cells[key]
+        digest = hashlib.sha256(np.ascontiguousarray(points).tobytes()).digest()
+        return self.derived(("cells", size, digest), lambda: lbg(points, size))
 
     def model(self, method: str, normalise: bool = False) -> Model:
         """The model of `method` ("paper" or "labial") trained on this part, as :func:`labial.train.train` does it."""
-        key = method, normalise
-        if key not in self._models:
-            added, variance = (self.added, self.talker_variance) if method == "labial" else ([], None)
-            self._models[key] = train([*(item.episode for item in self.utterances), *added], kind=self.phone_set.kind,
-                                      method=method, fps=self.fps, seed=self.seed, jobs=1, progress=False,
-                                      divide=self.divide, normalise=normalise, talker_variance=variance)
-        return self._models[key]
+        added, variance = (self.added, self.talker_variance) if method == "labial" else ((), None)
+        return self.derived(("model", method, normalise), lambda: train(
+            [*(item.episode for item in self.utterances), *added], kind=self.phone_set.kind, method=method,
+            fps=self.fps, seed=self.seed, jobs=1, progress=False, divide=self.divide, normalise=normalise,
+            talker_variance=variance))
 
     def derived(self, key: object, make: Callable[[], Setting]) -> Setting:
         """The result of `make`, cached for this part under `key`."""
@@ -129,11 +113,6 @@ class Fold:
     training: Training
     held_out: List[Utterance]
     words: Tuple[str, ...]
-
-
-def _spoken_words(item: Utterance, silence: int) -> Set[str]:
-    spoken = zip(item.words, item.timeline.phoneme)
-    return {word for word, phoneme in spoken if word is not None and phoneme != silence}
 
 
 def validation_error(scale: Scale, fold: Fold, predict: Predictor) -> float:
