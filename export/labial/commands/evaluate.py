@@ -148,6 +148,7 @@ def _by_timings(options: argparse.Namespace) -> str:
     with needs("evaluating", "hear"):
         from labial.evaluate import hearing, others
     from labial.hearing.model import load
+    from labial.hearing.voices import read_sentences
 
     own = hearing.methods(load(options.model))
     names = _chosen(options.methods, "--methods", list(own), list(others.PACKAGES))
@@ -156,7 +157,7 @@ def _by_timings(options: argparse.Namespace) -> str:
     with contextlib.nullcontext(options.cache) if options.cache else tempfile.TemporaryDirectory() as cache:
         sets = [hearing.of_folder(folder, cache, options.jobs, options.most or 0) for folder in options.folder]
         voices = hearing.VOICES if options.voices is None else options.voices
-        sets += [hearing.of_voice(voice, hearing.default_sentences()) for voice in voices]
+        sets += [hearing.of_voice(voice, read_sentences(hearing.SENTENCES)) for voice in voices]
     if not sets:
         raise LabialError("there is nothing to judge by: neither a folder nor a voice")
     return hearing.table(list(hearing.evaluated(sets, chosen, conditions)))

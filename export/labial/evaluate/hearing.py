@@ -8,6 +8,7 @@ whole sound in advance and so are at their best; a device would have to guess it
 
 from __future__ import annotations
 
+import itertools
 import zlib
 from functools import cache
 from pathlib import Path
@@ -24,8 +25,7 @@ from labial.hearing.measures import Figures, Judged, delay, measured
 from labial.hearing.model import HearingModel
 from labial.hearing.network import hear
 from labial.hearing.quantise import quantise
-from labial.hearing.targets import closure, frames
-from labial.hearing.voices import read_sentences, speak
+from labial.hearing.voices import speak
 
 #: dB below the loud frames' level at which the mouth is shut.
 _RANGE = 30.0
@@ -36,9 +36,9 @@ _FOLLOWS = 0.7
 
 
 @cache
-def _open_pose() -> np.ndarray:
-    """(13,) FAP units: the middle of a long AA."""
-    return frames([(SPEECH.silence, 200), ("AA", 400)], 30)[20]
+def long_pose(phoneme: str) -> np.ndarray:
+    """(13,) FAP units: the middle of a long phoneme."""
+    return targets.frames([(SPEECH.silence, 200), (phoneme, 400)], 30)[20]
 
 
 def _pieces(sound: np.ndarray) -> np.ndarray:
@@ -55,13 +55,9 @@ def shares(level: np.ndarray) -> np.ndarray:
     """(T,) 0 .. 1: the loudness of frames whose levels are (T,) dB, from `_RANGE` dB below the loud ones up to them."""
     if not len(level):
         return np.zeros(0)
-    found: np.ndarray = np.clip((level - np.percentile(level, 95)) / _RANGE + 1.0, 0.0, 1.0)
-    smooth: np.ndarray = np.empty_like(found)
-    last = 0.0
-    for k, value in enumerate(found):
-        last += _FOLLOWS * (value - last)
-        smooth[k] = last
-    return smooth
+    found = np.clip((level - np.percentile(level, 95)) / _RANGE + 1.0, 0.0, 1.0)
+    follow = itertools.accumulate(found, lambda last, value: last + _FOLLOWS * (value - last), initial=0.0)
+    return np.fromiter(follow, float)[1:]
 
 
 def crossings(sound: np.ndarray) -> np.ndarray:
@@ -88,8 +84,8 @@ def loudness_and_crossings(sound: np.ndarray) -> np.ndarray:
 
 
 def _pose(share: np.ndarray) -> np.ndarray:
-    shut = closure().pose
-    return shut + share[:, None] * (_open_pose() - shut)
+    shut = targets.closure().pose
+    return shut + share[:, None] * (long_pose("AA") - shut)
 
 
 #: Sentences that no bundled network was trained on, which voices say here.
@@ -201,14 +197,13 @@ def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
 def evaluated(sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]) -> Iterator[Row]:
     """A row for each set, condition and method. The distortions of a sound are the same for all methods."""
     for item in sets:
-        true = [(targets.frames(timings, frames_of(len(sound))), targets.classes(timings, frames_of(len(sound))))
+        true = [[of(timings, frames_of(len(sound))) for of in (targets.frames, targets.classes)]
                 for sound, timings in item.sounds]
         for condition in conditions:
             heard = [CONDITIONS[condition](sound, np.random.default_rng([zlib.crc32(condition.encode()), number]))
                      for number, (sound, _) in enumerate(item.sounds)]
             for name, method in judged.items():
-                motion = [method(sound) for sound in heard]
-                rows = [(frames, shown, classes) for (frames, classes), shown in zip(true, motion)]
+                rows = [(frames, method(sound), classes) for (frames, classes), sound in zip(true, heard)]
                 yield _row(item.name, condition, name, rows)
 
 
@@ -239,8 +234,3 @@ def table(rows: Sequence[Row]) -> str:
                  f"{f.false:.2f}", f"{f.jerk:.2f}", str(row.delay))
         lines.append(f"| {row.sounds} | {row.condition} | {row.method} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
-
-
-def default_sentences() -> List[str]:
-    """The sentences of `SENTENCES`."""
-    return read_sentences(SENTENCES)

@@ -26,7 +26,7 @@ from labial.files.grammar import read_lines
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
 from labial.fit.landmarks import read_head
-from labial.fit.meaning import Figures, fap, judge, matrix, opening
+from labial.fit.meaning import Figures, judge, matrix, meant, opening
 
 #: Oculus's names that avatars spell in another way.
 _OCULUS = {"ih": "I", "oh": "O", "ou": "U"}
@@ -62,9 +62,9 @@ def read_weights(path: Path, head: Head, times: np.ndarray) -> np.ndarray:
             entry = json.loads(line)
             weights = next(value for key, value in entry.items() if isinstance(value, dict) and key != "faps")
             rows.append((float(entry["time"]), {str(key): float(value) for key, value in weights.items()}))
-            if not np.isfinite([rows[-1][0], *rows[-1][1].values()]).all() or rows[-1][1].keys() != rows[0][1].keys():
-                raise ValueError
-            if len(rows) > 1 and rows[-1][0] <= rows[-2][0]:
+            late = len(rows) == 1 or rows[-1][0] > rows[-2][0]
+            if not (late and np.isfinite([rows[-1][0], *rows[-1][1].values()]).all()
+                    and rows[-1][1].keys() == rows[0][1].keys()):
                 raise ValueError
         except (AttributeError, KeyError, StopIteration, TypeError, ValueError):
             raise DataError(path, number, "expected an object with a later time and the same weights, numbers, as the "
@@ -87,11 +87,10 @@ def compare(head: Head, episodes: Sequence[Episode], weights: Sequence[np.ndarra
     frames = np.concatenate([episode.frames for episode in episodes])
     every = np.concatenate(list(weights))
     gap = opening(head, every)
-    meant = np.maximum(-(fap(frames, 51) + fap(frames, 52)) * head.mns / 1024.0, 0.0)
-    closures = closures_of(episodes)
+    wanted, closures = meant(head, frames), closures_of(episodes)
     return Row(judge(head, every, frames, closures),
                float(np.median([gap[begin:end].min() for begin, end in closures])), jerk(gap, episodes),
-               float(np.corrcoef(gap, meant)[0, 1]) if np.ptp(gap) and np.ptp(meant) else float("nan"))
+               float(np.corrcoef(gap, wanted)[0, 1]) if np.ptp(gap) and np.ptp(wanted) else float("nan"))
 
 
 def closures_of(episodes: Sequence[Episode]) -> List[Tuple[int, int]]:
@@ -153,10 +152,10 @@ def main(arguments: Optional[List[str]] = None) -> int:
     except (LabialError, OSError) as error:
         print(f"lipsync: {error}", file=sys.stderr)
         return 1
-    meant = np.concatenate([-(fap(e.frames, 51) + fap(e.frames, 52)) for e in episodes]) * head.mns / 1024.0
+    wanted = meant(head, np.concatenate([episode.frames for episode in episodes]))
     print(f"{len(episodes)} utterances, {sum(np.ptp(e.times) for e in episodes):.0f} s, {len(closures_of(episodes))} "
-          f"p, b, m; the FAPs mean an opening of {np.percentile(np.maximum(meant, 0.0), 95):.1f} mm (95th percentile) "
-          f"and a jerk of {jerk(np.maximum(meant, 0.0), episodes):.0f} m/s\u00b3\n")
+          f"p, b, m; the FAPs mean an opening of {np.percentile(wanted, 95):.1f} mm (95th percentile) and a jerk of "
+          f"{jerk(wanted, episodes):.0f} m/s\u00b3\n")
     print(f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}")
     for lipsync, row in rows.items():
         print(row.cells(lipsync))

@@ -21,8 +21,8 @@ from typing import Callable, Dict, Optional
 import numpy as np
 import soxr
 
-from labial.corpus.phonesets import SPEECH
 from labial.errors import LabialError, PathLike, apt, missing, needs
+from labial.evaluate.hearing import long_pose
 from labial.files.faps import CHANNELS
 from labial.hearing import voices
 from labial.hearing.features import RATE, frames_of
@@ -46,7 +46,7 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
     """One of `PACKAGES`: (N,) int16 at 16 kHz -> (T, 13) frames. `npm` is the folder where its package was installed.
     Raises LabialError where node or the package is not there."""
     if name == "pocketsphinx":
-        return Listener().frames
+        return listener()
     package = PACKAGES[name]
     node = shutil.which("node")
     if node is None:
@@ -56,12 +56,14 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
     modules = Path(npm).resolve() / "node_modules"
     if not (modules / package / "package.json").is_file():
         raise LabialError(f"there is no {modules / package}: npm install --prefix {npm} {package}")
-    program = node
-    if package == "wawa-lipsync":
-        column = 0 if name == package else 1
-        return lambda sound: shown(run(program, package, modules, levels(in_browser(sound)).tobytes())[:, column],
-                                   frames_of(len(sound)))
-    return lambda sound: shown(run(program, name, modules, in_browser(sound).tobytes())[:, 0], frames_of(len(sound)))
+    program, column = node, int(name == "wawa-lipsync unsmoothed")
+
+    def heard(sound: np.ndarray) -> np.ndarray:
+        samples = in_browser(sound)
+        kind, given = (name, samples) if name == "headaudio" else (package, levels(samples))
+        return shown(run(program, kind, modules, given.tobytes())[:, column], frames_of(len(sound)))
+
+    return heard
 
 
 # ---- The browser
@@ -110,7 +112,7 @@ def poses() -> np.ndarray:
         if viseme == "PP":
             found[row] = closure().pose
         elif phoneme:
-            found[row] = frames([(SPEECH.silence, 200), (phoneme, 400)], 30)[20]
+            found[row] = long_pose(phoneme)
     return found
 
 
@@ -126,17 +128,16 @@ def shown(weights: np.ndarray, count: int) -> np.ndarray:
 # ---- The recogniser
 
 
-class Listener:
+def listener() -> Callable[[np.ndarray], np.ndarray]:
     """PocketSphinx's phone loop, spoken by Labial's bundled voice."""
+    with needs("the method pocketsphinx", "align"):
+        from labial.sound.recogniser import Recogniser
+    recogniser = Recogniser()
 
-    def __init__(self) -> None:
-        with needs("the method pocketsphinx", "align"):
-            from labial.sound.recogniser import Recogniser
-        self._recogniser = Recogniser()
-
-    def frames(self, sound: np.ndarray) -> np.ndarray:
-        """(T, 13) frames of an int16 sound at 16 kHz."""
+    def heard(sound: np.ndarray) -> np.ndarray:
         if not len(sound):
             return np.zeros((0, CHANNELS))
-        segments = self._recogniser.loop(prepared(np.asarray(sound, np.float32) / 32768))
+        segments = recogniser.loop(prepared(np.asarray(sound, np.float32) / 32768))
         return frames(durations(segments), frames_of(len(sound)))
+
+    return heard

@@ -64,28 +64,25 @@ class Kept:
             about = json.loads(json.loads(members["model.json"])["outcome"])
             if about["of"] != self._of or about["split"] != json.loads(json.dumps(astuple(split))):
                 return None
-            outcome = Outcome(split, about["frames"], about["measures"], about["seconds"])
-            if about["example"] is not None:
-                shown, stretch = about["example"]["index"], about["example"]["stretch"]
-                motion = {name: array(name, members[f"{number}.npy"])
-                          for number, name in enumerate(about["example"]["motion"])}
-                outcome = replace(outcome, example=Example(
-                    about["example"]["kind"], shown, self._corpus[shown], stretch and tuple(stretch),
-                    array("steps", members["steps.npy"]), motion))
+            example = about["example"]
+            if example is not None:
+                shown, stretch = example["index"], example["stretch"]
+                motion = {name: array(name, members[f"{number}.npy"]) for number, name in enumerate(example["motion"])}
+                example = Example(example["kind"], shown, self._corpus[shown], stretch and tuple(stretch),
+                                  array("steps", members["steps.npy"]), motion)
+            return Outcome(split, about["frames"], about["measures"], about["seconds"], example)
         except (OSError, LabialError, ValueError, KeyError, TypeError, IndexError):  # none, or another version's
             return None
-        return outcome
 
     def keep(self, outcome: Outcome) -> None:
         """Stores a split; warns if that fails, since the evaluation can continue without."""
         example = outcome.example
-        arrays: Dict[str, np.ndarray] = {}
-        about: Dict[str, object] = {"of": self._of, "split": astuple(outcome.split), "frames": outcome.frames,
-                 "measures": outcome.measures, "seconds": outcome.seconds, "example": None}
-        if example is not None:
-            about["example"] = {"kind": example.kind, "index": example.index, "stretch": example.stretch,
-                                "motion": list(example.motion)}
-            arrays = {"steps": example.steps, **{str(n): item for n, item in enumerate(example.motion.values())}}
+        arrays = {"steps": example.steps, **{str(n): item for n, item in enumerate(example.motion.values())}
+                  } if example else {}
+        about = {"of": self._of, "split": astuple(outcome.split), "frames": outcome.frames,
+                 "measures": outcome.measures, "seconds": outcome.seconds,
+                 "example": example and {"kind": example.kind, "index": example.index, "stretch": example.stretch,
+                                         "motion": list(example.motion)}}
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             write_model(self._path(outcome.split), {"outcome": json.dumps(about)}, arrays.items())
@@ -138,12 +135,6 @@ def _stretch(item: Utterance, phone_set: PhoneSet, split: Split) -> Optional[Tup
     return item.longest_word(silence_of(phone_set), split.words)
 
 
-def _most_shown(test: Sequence[Utterance], phone_set: PhoneSet, split: Split) -> int:
-    """The utterance with the most plotted segments, the first of equals."""
-    shown = [_stretch(item, phone_set, split) or (0, -1) for item in test]
-    return int(np.argmax([last - first + 1 for first, last in shown]))
-
-
 def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Outcome:
     """Fits and measures all methods on one split."""
     phone_set = PHONE_SETS[options.kind]
@@ -163,7 +154,9 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
         return {**judge.measure(made), **reader.measure(made)}
 
     measures = {HUMAN: measured([item.human for item in test])}
-    shown = _most_shown(test, phone_set, split)
+    stretches = [_stretch(item, phone_set, split) for item in test]
+    # The utterance with the most plotted segments, the first of equals.
+    shown = int(np.argmax([found[1] - found[0] + 1 if found else 0 for found in stretches]))
     motion: Dict[str, np.ndarray] = {}
     seconds: Dict[str, float] = {}
     for method in select(options.methods):
@@ -174,9 +167,8 @@ def run_split(corpus: Sequence[Utterance], split: Split, options: Options) -> Ou
         motion[method.name] = made[shown]
     example = None
     if split.number == 0:
-        item = test[shown]
-        held = steps.fit(training)(item.timeline)
-        example = Example(options.kind, judged[shown][0], item, _stretch(item, phone_set, split), held, motion)
+        held = steps.fit(training)(test[shown].timeline)
+        example = Example(options.kind, judged[shown][0], test[shown], stretches[shown], held, motion)
     return Outcome(split, judge.frames, measures, seconds, example)
 
 

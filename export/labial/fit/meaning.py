@@ -115,6 +115,11 @@ def opening(head: Head, weights: np.ndarray) -> np.ndarray:
         head.moves["inner_upper"] - head.moves["inner_lower"])[:, 1]
 
 
+def meant(head: Head, frames: np.ndarray) -> np.ndarray:
+    """(T,) mm: the opening that (T, 13) frames mean, which is never negative."""
+    return np.maximum(-(fap(frames, 51) + fap(frames, 52)) * head.mns / 1024.0, 0.0)
+
+
 def crooked(head: Head, weights: np.ndarray, frames: np.ndarray) -> Tuple[float, float]:
     """Most millimetres by which (T, K) weights move the mouth sideways, and by which its corners differ in height,
     beyond what the (T, 13) frames mean."""
@@ -137,16 +142,15 @@ def judge(head: Head, weights: np.ndarray, frames: np.ndarray, closures: Sequenc
     table = rows(head, frames)
     errors = {row.name: float(np.sqrt(np.mean((weights @ row.moves + row.rest - row.target) ** 2))) for row in table}
     gap = opening(head, weights)
-    # The shown opening may be negative, the opening that the FAPs mean is not.
-    meant = np.maximum(-(fap(frames, 51) + fap(frames, 52)) * head.mns / 1024.0, 0.0)
+    wanted = meant(head, frames)
     nearest = np.array([gap[begin:end].min() for begin, end in closures])
-    high, low = (float(np.percentile(values, 95)) for values in (gap, meant))
+    high, low = (float(np.percentile(values, 95)) for values in (gap, wanted))
 
     def mean(*names: str) -> float:
         present = [errors[name] for name in names if name in errors]
         return float(np.sqrt(np.mean(np.square(present)))) if present else float("nan")
 
-    return Figures(high / low, high, low, float(np.sqrt(np.mean((gap - meant) ** 2))), errors["width"],
+    return Figures(high / low, high, low, float(np.sqrt(np.mean((gap - wanted) ** 2))), errors["width"],
                    mean("corner left", "corner right"), errors["upper lip"], errors["lower lip"], mean("jaw"),
                    mean("upper lip forward", "lower lip forward"), float(np.mean(nearest < CLOSED)),
                    float(np.mean(nearest < THROUGH)), float(gap.min()))
