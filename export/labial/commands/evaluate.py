@@ -7,7 +7,6 @@ import argparse
 import contextlib
 import os
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Dict, List, Optional, Sequence
 
@@ -18,7 +17,7 @@ from labial.files.grammar import positive, seed
 from labial.files.outputs import check, check_folder, folder
 
 if TYPE_CHECKING:
-    from labial.evaluate.material import Options, Outcome
+    from labial.evaluate.material import Outcome
 
 
 def add_evaluate(command: argparse.ArgumentParser) -> None:
@@ -44,27 +43,8 @@ def add_evaluate(command: argparse.ArgumentParser) -> None:
 
 def run_evaluate(options: argparse.Namespace) -> None:
     with needs("evaluating", "train,evaluate"):
-        from labial.evaluate.material import Options
-
-    words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
-    if words and options.leave_out_talkers:
-        raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
-    if options.first_corpus_alone and not options.leave_out_talkers:
-        raise LabialError("--first-corpus-alone needs --leave-out-talkers")
-    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
-                    options.leave_out_talkers, talker_variance=options.talker_variance,
-                    first_corpus_alone=options.first_corpus_alone)
-    for path in _evaluated(options.corpus, options.output, asked, options.jobs, options.engine,
-                           shows_progress(options)):
-        print(path)
-
-
-def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int, engine: Optional[str],
-               progress: bool) -> List[Path]:
-    """Evaluates and writes the report into the folder `output`; returns what was written. Finished splits are stored
-    there until the report is written, and reused."""
-    with needs("evaluating", "train,evaluate"):
         from labial.evaluate import report
+        from labial.evaluate.material import Options
         from labial.evaluate.methods import select
         from labial.evaluate.protocol import evaluate, remove_kept
         from labial.train.pipeline import check_jobs
@@ -73,26 +53,35 @@ def _evaluated(corpora: Sequence[str], output: str, options: Options, jobs: int,
     from labial.corpus import read_corpora
     from labial.corpus.laughter import is_synthetic
 
+    words = tuple(word.strip() for word in options.hold_out_words.split(",") if word.strip())
+    if words and options.leave_out_talkers:
+        raise LabialError("--hold-out-words and --leave-out-talkers do not go together")
+    if options.first_corpus_alone and not options.leave_out_talkers:
+        raise LabialError("--first-corpus-alone needs --leave-out-talkers")
     select(options.methods)  # before the corpora are read
-    check_folder(output)
-    check_jobs(jobs)
+    check_folder(options.output)
+    check_jobs(options.jobs)
     check_variance(options.talker_variance)
-    Workers(jobs, False, engine)
-    options = replace(options, synthetic=is_synthetic(corpora[0]))
-    first, *others = read_corpora(corpora, options.kind, distinct=True)
-    further = [episode for corpus in others for episode in corpus]
-    outcomes = evaluate(first, options, further=further, jobs=jobs, engine=engine, progress=progress,
-                        folder=Path(output))
+    Workers(options.jobs, False, options.engine)
+    asked = Options(options.kind, options.methods, options.splits, options.seed, options.fps, words,
+                    options.leave_out_talkers, options.talker_variance, options.first_corpus_alone,
+                    is_synthetic(options.corpus[0]))
+    first, *others = read_corpora(options.corpus, options.kind, distinct=True)
+    output = Path(options.output)  # which also keeps finished splits until the report is written
+    outcomes = evaluate(first, asked, further=[episode for corpus in others for episode in corpus], jobs=options.jobs,
+                        engine=options.engine, progress=shows_progress(options), folder=output)
     with folder(output) as made:
-        drawn = report.draw(outcomes, options, made)
-        written = [path.name for path in report.write(outcomes, options, made, drawn)]
-    remove_kept(Path(output))
-    if options.leave_out_talkers:
-        print(report.talkers_table(outcomes, report.methods_of(outcomes)))
-    print(report.caption("Table 1", "diff", options))
-    print(report.markdown_table(outcomes, report.methods_of(outcomes), report.TABLE_1))
+        drawn = report.draw(outcomes, asked, made)
+        written = [path.name for path in report.write(outcomes, asked, made, drawn)]
+    remove_kept(output)
+    methods = report.methods_of(outcomes)
+    if asked.leave_out_talkers:
+        print(report.talkers_table(outcomes, methods))
+    print(report.caption("Table 1", "diff", asked))
+    print(report.markdown_table(outcomes, methods, report.TABLE_1))
     print(_processor_time(outcomes))
-    return [Path(output) / name for name in (*written, *drawn)]
+    for name in (*written, *drawn):
+        print(output / name)
 
 
 def _processor_time(outcomes: Sequence[Outcome]) -> str:

@@ -73,8 +73,6 @@ def _points(options: argparse.Namespace) -> Dict[str, int]:
 
 
 def run_fit(options: argparse.Namespace) -> None:
-    from labial.errors import LabialError, needs
-
     output = Path(options.output)
     if output.suffix != ".toml":
         raise LabialError(f"{output}: a rig's description is a .toml file")
@@ -146,7 +144,7 @@ def add_page(command: argparse.ArgumentParser) -> None:
 
 def run_page(options: argparse.Namespace) -> None:
     from labial.see.motion import read_bands, read_motion
-    from labial.see.page import page
+    from labial.see.page import head_page, page
 
     check(options.output, ".html", ".htm")
     timings = _timings(options)
@@ -156,8 +154,6 @@ def run_page(options: argparse.Namespace) -> None:
             raise LabialError("--rig, --point and --three go with --head")
         text = page(motion, bands, options.audio, options.title)
     else:
-        from labial.see.page import head_page
-
         text = head_page(motion, options.head, options.rig, options.audio, options.title, options.three,
                          _points(options))
     put(text, options.output)

@@ -166,7 +166,11 @@ def sound_of(path: str) -> Tuple[int, int, bytes]:
         raise DataError(path, None, error.strerror or str(error)) from None
     except wav.ERRORS:
         pass
-    return 16000, 1, _converted(path)
+    import numpy as np
+
+    with needs(f"{path}: a sound that is not {_PLAIN}", "align"):
+        from labial.sound.samples import read_sound
+    return 16000, 1, np.clip(np.rint(read_sound(path) * 32767), -32768, 32767).astype("<i2").tobytes()
 
 
 def _is_plain(file: wav.Sound) -> bool:
@@ -208,24 +212,14 @@ def _piped(rate: int, channels: int) -> Tuple[int, int, Iterator[bytes]]:
     raise DataError(name, None, f"a sound with a header must be {_PLAIN}")
 
 
-def _converted(path: str) -> bytes:
-    import numpy as np
-
-    with needs(f"{path}: a sound that is not {_PLAIN}", "align"):
-        from labial.sound.samples import read_sound
-    return np.clip(np.rint(read_sound(path) * 32767), -32768, 32767).astype("<i2").tobytes()
-
-
 def _parts(hearing: Hearing, blocks: Iterator[bytes]) -> Iterator[np.ndarray]:
     """(n, 13) frames as they become known."""
     import numpy as np
 
     for block in blocks:
-        found: List[Any] = hearing.push(block)
-        if found:
+        if found := hearing.push(block):
             yield np.array([frame.faps for frame in found], dtype=np.float64)
-    rest = hearing.end()
-    yield np.array([frame.faps for frame in rest], dtype=np.float64).reshape(-1, 13)
+    yield np.array([frame.faps for frame in hearing.end()], dtype=np.float64).reshape(-1, 13)
 
 
 def _flushed(parts: Iterator[np.ndarray], out: Any) -> Iterator[np.ndarray]:

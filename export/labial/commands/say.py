@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import re
 import shutil
 import tempfile
 import wave
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple
 
-from labial.commands.common import put
+from labial.commands.common import opened, put
 from labial.errors import LabialError
-from labial.files.outputs import check, check_suffix, writing
+from labial.files.outputs import check, check_suffix
 
 if TYPE_CHECKING:
     from labial.hearing.voices import Spoken
@@ -56,20 +57,26 @@ def run_say(options: argparse.Namespace) -> None:
             _expect_words(options, timings)
             if spoken is not None and form == ".html":
                 audio = str(Path(stack.enter_context(tempfile.TemporaryDirectory())) / "said.wav")
-                _write_sound(spoken, audio)
+                with wave.open(audio, "wb") as file:
+                    file.setparams((1, 2, spoken.rate, 0, "NONE", ""))
+                    file.writeframes(spoken.samples.astype("<i2").tobytes())
         elif form == ".lab":
             raise LabialError(f"{audio}: labial align finds the phonemes of a recording")
         if form == ".lab":
             rows = [f"{begin / 1000:.3f} {end / 1000:.3f} {label}\n" for label, begin, end in _placed(timings or [])]
-            put("".join(rows), options.output)
-            return
+            return put("".join(rows), options.output)
         frames = _heard(audio) if timings is None else _rendered(timings)
         if form == ".html":
             from labial.see.player import player
 
-            put(player(options.text.strip()[:80], 50, frames, _bands(timings or []), 0.0, audio), options.output)
-            return
-        _write_frames(frames, form[1:], options.output)
+            return put(player(options.text.strip()[:80], 50, frames, _bands(timings or []), 0.0, audio), options.output)
+        import numpy as np
+
+        from labial.rig.animation import FORMATS
+
+        with opened(options.output) as out:
+            FORMATS[form[1:]].write(out, [np.array(frames, dtype=np.float64)], 50, Path(options.output).stem,
+                                    len(frames))
 
 
 def _spoken(options: argparse.Namespace, form: str) -> Optional[Spoken]:
@@ -135,22 +142,15 @@ def _timed(text: str, language: str) -> Timings:
 
 def _placed(timings: Timings) -> List[Tuple[str, int, int]]:
     """Phonemes with their beginnings and ends."""
-    found, moment = [], 0
-    for label, length in timings:
-        found.append((label, moment, moment + length))
-        moment += length
-    return found
+    ends = itertools.accumulate(length for _, length in timings)
+    return [(label, end - length, end) for (label, length), end in zip(timings, ends)]
 
 
 def _bands(timings: Timings) -> List[Dict[str, Any]]:
     """Phonemes as the page shows them."""
-    found = []
-    for label, begin, end in _placed(timings):
-        first, last = (begin + 10) // 20, (end + 10) // 20
-        if last > first:
-            found.append({"label": label, "start_frame": first, "frames": last - first,
-                          "kind": "silence" if label == "SIL" else "speech"})
-    return found
+    placed = ((label, (begin + 10) // 20, (end + 10) // 20) for label, begin, end in _placed(timings))
+    return [{"label": label, "start_frame": first, "frames": end - first,
+             "kind": "silence" if label == "SIL" else "speech"} for label, first, end in placed if end > first]
 
 
 def _rendered(timings: Timings) -> List[Tuple[int, ...]]:
@@ -168,19 +168,3 @@ def _heard(path: str) -> List[Tuple[int, ...]]:
     with Hearing(rate, channels) as hearing:
         hearing.measure(sound)
         return [frame.faps for frame in hearing.frames([sound])]
-
-
-def _write_sound(spoken: Spoken, path: str) -> None:
-    with wave.open(path, "wb") as file:
-        file.setparams((1, 2, spoken.rate, 0, "NONE", ""))
-        file.writeframes(spoken.samples.astype("<i2").tobytes())
-
-
-def _write_frames(frames: Sequence[Tuple[int, ...]], form: str, output: str) -> None:
-    import numpy as np
-
-    from labial.rig.animation import FORMATS
-
-    out: Any
-    with writing(output, "ascii") as out:
-        FORMATS[form].write(out, [np.array(frames, dtype=np.float64)], 50, Path(output).stem, len(frames))

@@ -134,13 +134,10 @@ def _adapt(options: argparse.Namespace) -> None:
 
 def _labials_own(options: argparse.Namespace) -> Dict[str, Any]:
     """The options of ``--method labial``; warns if an option has no effect with the chosen method."""
-    own: Dict[str, Any] = {}
-    if options.look_ahead is not None:
-        own["look_ahead"] = options.look_ahead / 1000.0
-    if options.search_stride is not None:
-        own["search_stride"] = options.search_stride
-    if options.talker_variance is not None:
-        own["talker_variance"] = options.talker_variance
+    own: Dict[str, Any] = {name: value for name in ("look_ahead", "search_stride", "talker_variance")
+                           if (value := getattr(options, name)) is not None}
+    if "look_ahead" in own:
+        own["look_ahead"] /= 1000.0
     if own and options.method == "paper":
         names = " and ".join("--" + name.replace("_", "-") for name in own)
         warnings.warn(f"{names}: of no effect with --method paper", stacklevel=1)
