@@ -54,21 +54,19 @@ def talker(path: PathLike, times: np.ndarray, seen: Sequence[Sequence[np.ndarray
     main = _chosen(tracks, len(times), face)
     step = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
     result = np.full((len(times), *main.points[0].shape), np.nan, np.float32)
+    result[main.frames] = main.points
     taken = set(main.frames)
-    same = [main]
     for track in tracks:
         if track is main:
             continue
         apart = float(np.hypot(*(track.middle - main.middle)))
-        if apart < _PLACE * main.height and not taken & set(track.frames):
-            same.append(track)
-            taken |= set(track.frames)
+        if apart < _PLACE * main.height and taken.isdisjoint(track.frames):
+            result[track.frames] = track.points
+            taken.update(track.frames)
         elif face is None and track.height >= _BACKGROUND * main.height and len(track.frames) * step > _GLIMPSE:
             first, last = times[track.frames[0]], times[track.frames[-1]]
             raise DataError(path, None, f"two faces, the second from {first:.2f} to {last:.2f} s: say with --face "
                             f"{', '.join(WHICH_FACE[:-1])} or {WHICH_FACE[-1]} which is the talker's")
-    for track in same:
-        result[track.frames] = track.points
     return result
 
 
@@ -77,25 +75,25 @@ def _tracks(times: np.ndarray, seen: Sequence[Sequence[np.ndarray]]) -> List[Tra
     tracks: List[Track] = []
     for number, faces in enumerate(seen):
         live = [track for track in tracks if times[number] - times[track.frames[-1]] <= _LINK]
-        pairs: List[Tuple[float, int, int]] = []
-        for i, points in enumerate(faces):
-            for j, track in enumerate(live):
-                apart = float(np.hypot(*(_middle(points) - _middle(track.points[-1])))) / _height(track.points[-1])
-                if apart < _STEP:
-                    pairs.append((apart, i, j))
+        pairs = sorted((apart, i, j) for i, points in enumerate(faces) for j, track in enumerate(live)
+                       if (apart := _apart(points, track.points[-1])) < _STEP)
         free = set(range(len(faces)))
-        for _, i, j in sorted(pairs):
+        for _, i, j in pairs:
             if i in free and live[j].frames[-1] != number:
                 live[j].frames.append(number)
                 live[j].points.append(faces[i])
                 free.remove(i)
-        new = [faces[i] for i in sorted(free)]
         here = [track.points[-1] for track in live if track.frames[-1] == number]
-        for points in new:  # a tracker may find one face twice
-            if all(np.hypot(*(_middle(points) - _middle(other))) >= _STEP * _height(other) for other in here):
-                tracks.append(Track([number], [points]))
-                here.append(points)
+        for i in sorted(free):  # a tracker may find one face twice
+            if all(_apart(faces[i], other) >= _STEP for other in here):
+                tracks.append(Track([number], [faces[i]]))
+                here.append(faces[i])
     return tracks
+
+
+def _apart(points: np.ndarray, other: np.ndarray) -> float:
+    """The distance of a face from another one, in the other's heights."""
+    return float(np.hypot(*(_middle(points) - _middle(other))) / _height(other))
 
 
 def _chosen(tracks: Sequence[Track], count: int, face: Optional[str]) -> Track:
@@ -148,10 +146,7 @@ def facing(landmarks: Landmarks) -> Tuple[Landmarks, str]:
         return landmarks, ""
     points = landmarks.points.copy()
     points[away] = np.nan
-    return replace(landmarks, points=points), _said(landmarks, away, angles)
-
-
-def _said(landmarks: Landmarks, away: np.ndarray, angles: np.ndarray) -> str:
     yaw, pitch = abs(angles[away]).max(axis=0)
-    return (f"the head is turned too far from {spans_told(landmarks.times, away, 4)}: by up to {yaw:.0f} degrees to a "
-            f"side and {pitch:.0f} up or down, {MOST_YAW:.0f} and {MOST_PITCH:.0f} at most; these frames count as lost")
+    return replace(landmarks, points=points), (
+        f"the head is turned too far from {spans_told(landmarks.times, away, 4)}: by up to {yaw:.0f} degrees to a side "
+        f"and {pitch:.0f} up or down, {MOST_YAW:.0f} and {MOST_PITCH:.0f} at most; these frames count as lost")

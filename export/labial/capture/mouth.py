@@ -15,7 +15,7 @@ error of 12 (standard deviation 27), FAP 16 with .91 and 46 (106).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 
@@ -83,7 +83,9 @@ def faps(recordings: Sequence[Recording], silence: str) -> List[np.ndarray]:
                 values[:, _CHANNEL[number]] = sign * 1024 / units[unit] * moved[:, INDEX[landmark], axis]
         if moved.shape[2] == 2:
             values[:, _CHANNEL[16]] = _ROLL * values[:, _CHANNEL[52]]
-        values[:, _CHANNEL[17]] = _protrusion(values, item.landmarks.pucker)
+        pucker, narrowing = item.landmarks.pucker, -(values[:, _CHANNEL[53]] + values[:, _CHANNEL[54]])
+        values[:, _CHANNEL[17]] = (_NARROW * np.maximum(narrowing - _NARROW_FROM, 0.0) if pucker is None
+                                   else _PUCKER * pucker)
         result.append(values)
     return result
 
@@ -162,10 +164,3 @@ def _units(face: np.ndarray) -> Dict[str, float]:
             raise LabialError(f"the nose's tip stands out {nose:.2f} of the distance of the eyes: "
                               "z must grow away from the camera, in the unit of x")
     return units
-
-
-def _protrusion(values: np.ndarray, pucker: Optional[np.ndarray]) -> np.ndarray:
-    if pucker is not None:
-        return _PUCKER * pucker
-    narrowing = -(values[:, _CHANNEL[53]] + values[:, _CHANNEL[54]])
-    return _NARROW * np.maximum(narrowing - _NARROW_FROM, 0.0)

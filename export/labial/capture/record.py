@@ -86,14 +86,12 @@ def _files(sources: Sequence[PathLike]) -> List[Path]:
     """The landmark files, sorted by name; names are what episodes are called, so each may occur once."""
     files: List[Path] = []
     for source in map(Path, sources):
-        if source.is_dir():
-            found = [file for file in sorted(source.iterdir())
-                     if file.suffix.lower() in _LANDMARKS and file.is_file() and not file.name.startswith(".")]
-            if not found:
-                raise DataError(source, None, "no landmarks (.npz, .npy or .csv)")
-            files += found
-        else:
-            files.append(source)
+        found = [source] if not source.is_dir() else [
+            file for file in sorted(source.iterdir())
+            if file.suffix.lower() in _LANDMARKS and file.is_file() and not file.name.startswith(".")]
+        if not found:
+            raise DataError(source, None, "no landmarks (.npz, .npy or .csv)")
+        files += found
     seen: Dict[str, Path] = {}
     for file in files:
         if file.stem in seen:

@@ -52,7 +52,9 @@ def landmarks(video: PathLike, output: PathLike, face: Optional[str] = None, tas
     output += "" if output.endswith(".npz") else ".npz"
     with writing(output) as file:
         np.savez(file, **arrays)
-    return _summary(output, moments, np.isfinite(points[:, 0, 0]))
+    lost = ~np.isfinite(points[:, 0, 0])
+    return (f"{output}: {len(times)} frames, {1.0 / float(np.median(np.diff(moments))):.4g} a second"
+            + (f"; {int(lost.sum())} without the face, from {spans_told(moments, lost, 6)}" if lost.any() else ""))
 
 
 class FaceMesh:
@@ -106,8 +108,6 @@ class FaceLandmarker:
         self._landmarker.close()
 
 
-
-
 def _points(face: Iterable[Any], picture: np.ndarray) -> np.ndarray:
     height, width = picture.shape[:2]
     return np.array([(p.x, p.y, p.z) for p in face], np.float32) * np.array([width, height, width], np.float32)
@@ -121,10 +121,3 @@ def _scores(points: np.ndarray, seen: List[Faces]) -> np.ndarray:
             if np.array_equal(own, points[number]):
                 scores[number] = score
     return scores
-
-
-def _summary(output: PathLike, times: np.ndarray, there: np.ndarray) -> str:
-    text = f"{os.fspath(output)}: {len(times)} frames, {1.0 / float(np.median(np.diff(times))):.4g} a second"
-    if there.all():
-        return text
-    return f"{text}; {int((~there).sum())} without the face, from {spans_told(times, ~there, 6)}"

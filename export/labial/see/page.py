@@ -33,13 +33,17 @@ def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None
     MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `limits.PAGE` bytes, whose time 0 is that of the motion's file. Raises
     DataError, which names it, when it is none, and LabialError for a motion whose frames are too uneven in time to be
     played."""
-    try:
-        fps, frames = even(motion.times, motion.frames)
-    except ValueError as error:
-        raise LabialError(f"{motion.name}: {error}") from None
+    fps, frames = _even(motion)
     start = float(motion.times[0])
     return player(title or motion.name, fps, np.rint(frames).astype(int).tolist(),
                   _phonemes(bands, start, fps, len(frames)), start, audio)
+
+
+def _even(motion: Motion) -> Tuple[float, np.ndarray]:
+    try:
+        return even(motion.times, motion.frames)
+    except ValueError as error:
+        raise LabialError(f"{motion.name}: {error}") from None
 
 
 def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> List[Dict[str, Any]]:
@@ -146,10 +150,7 @@ def head_page(motion: Motion, avatar: PathLike, rig: Optional[PathLike] = None, 
     if len(content) > limits.PAGE:
         raise DataError(where, None, f"a page takes an avatar of {limits.PAGE // 1_000_000} MB at most, and this one "
                                      f"has {len(content) / 1e6:.1f} MB")
-    try:
-        fps, frames = even(motion.times, motion.frames)
-    except ValueError as error:
-        raise LabialError(f"{motion.name}: {error}") from None
+    fps, frames = _even(motion)
     weights = outputs(chosen, frames, motion.shares if len(frames) == len(motion.frames) else None)
     if rig is None:
         _warn(where, found, {shape: weights[name] for name, shape in used.items()}, frames)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -54,18 +55,22 @@ class Recogniser:
     one finds words, one finds phonemes alone."""
 
     def __init__(self) -> None:
-        self._follower: Optional[Decoder] = None
-        self._finder: Optional[Decoder] = None
         self._loose: Optional[Decoder] = None
-        self._loop: Optional[Decoder] = None
         self._learnt: Dict[str, str] = {}
 
-    @property
+    @cached_property
     def follower(self) -> Decoder:
         """The decoder that follows words; its dictionary can be extended."""
-        if self._follower is None:
-            self._follower = Decoder(lm=None, loglevel="FATAL", **_WIDE)
-        return self._follower
+        return Decoder(lm=None, loglevel="FATAL", **_WIDE)
+
+    @cached_property
+    def _finder(self) -> Decoder:
+        return Decoder(loglevel="FATAL", fwdflat=False, maxhmmpf=5000)
+
+    @cached_property
+    def _loop(self) -> Decoder:
+        model = get_model_path("en-us/en-us-phone.lm.bin")
+        return Decoder(allphone=model, lm=None, dict=None, loglevel="FATAL", **_PHONE_LOOP)
 
     def lookup(self, word: str) -> Optional[str]:
         """The dictionary's phonemes of a word, or None."""
@@ -128,8 +133,6 @@ class Recogniser:
         """Phonemes of the most probable words of `samples`; None without any."""
         if len(samples) < _SHORTEST:
             return None
-        if self._finder is None:
-            self._finder = Decoder(loglevel="FATAL", fwdflat=False, maxhmmpf=5000)
         self._finder.activate_search()
         return _phonemes(self._finder, samples) if _words(self._finder, samples) else None
 
@@ -137,9 +140,6 @@ class Recogniser:
         """The most probable phonemes of `samples`, whatever the words, in seconds; noises are silence."""
         if len(samples) < _SHORTEST:
             return []
-        if self._loop is None:
-            model = get_model_path("en-us/en-us-phone.lm.bin")
-            self._loop = Decoder(allphone=model, lm=None, dict=None, loglevel="FATAL", **_PHONE_LOOP)
         return [Segment(start + (_OFFSET if start else 0.0), end + _OFFSET, phone if phone.isalpha() else "SIL")
                 for phone, start, end in _words(self._loop, samples)]
 
@@ -305,11 +305,11 @@ def stretches(heard: Sequence[Heard], start: float) -> List[Stretch]:
     for item in heard:
         if item.label == "SIL":
             open_part = open_part and item.end - item.start < _PAUSE
-        elif open_part and item.end - parts[-1][0].start <= _LONGEST:
-            parts[-1].append(item)
-        else:
-            parts.append([item])
-            open_part = True
+            continue
+        if not open_part or item.end - parts[-1][0].start > _LONGEST:
+            parts.append([])
+        parts[-1].append(item)
+        open_part = True
     return [Stretch(start + part[0].start, start + part[-1].end, confidence(part)) for part in parts]
 
 
@@ -355,14 +355,6 @@ def summary(found: Sequence[Stretch]) -> str:
 
 def unsure(found: Sequence[Stretch]) -> str:
     """The stretches of low confidence, neighbours as one, for a message; "" where there are none."""
-    spans: List[List[float]] = []
-    before = False
-    for item in found:
-        if item.confidence < LOW:
-            if before:
-                spans[-1][1] = item.end
-            else:
-                spans.append([item.start, item.end])
-        before = item.confidence < LOW
-    more = f" and {len(spans) - 6} more" if len(spans) > 6 else ""
-    return ", ".join(f"{a:.1f} to {b:.1f} s" for a, b in spans[:6]) + more
+    runs = [list(run) for low, run in itertools.groupby(found, lambda item: item.confidence < LOW) if low]
+    more = f" and {len(runs) - 6} more" if len(runs) > 6 else ""
+    return ", ".join(f"{run[0].start:.1f} to {run[-1].end:.1f} s" for run in runs[:6]) + more
