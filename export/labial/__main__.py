@@ -86,7 +86,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
         except BrokenPipeError:  # the reader of the output closed the pipe
             drop_output()
         except OSError as error:
-            _complain(f"{_name(error)}: {error.strerror or error}")
+            named = isinstance(error.filename, (str, bytes, os.PathLike))
+            _complain(f"{os.fsdecode(error.filename) if named else 'the output'}: {error.strerror or error}")
             drop_output()
         except MemoryError:
             _complain("there is not enough memory for this")
@@ -97,24 +98,15 @@ def main(arguments: Optional[List[str]] = None) -> int:
             _complain(f"ended by {signal.Signals(ended.args[0]).name}")
             return 128 + int(ended.args[0])
         except Exception as error:
-            _complain(_defect(error))
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            _complain(f"this is a defect of labial, please report it: {type(error).__name__}: {error} "
+                      f"({Path(place.filename).name}, line {place.lineno})")
             return 3
     return 1
 
 
 def _complain(text: str) -> None:
     complain("labial", text)
-
-
-def _name(error: OSError) -> str:
-    return os.fsdecode(error.filename) if isinstance(error.filename, (str, bytes, os.PathLike)) else "the output"
-
-
-def _defect(error: Exception) -> str:
-    """The message for an internal error."""
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    return (f"this is a defect of labial, please report it: {type(error).__name__}: {error} "
-            f"({Path(place.filename).name}, line {place.lineno})")
 
 
 if __name__ == "__main__":

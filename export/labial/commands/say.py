@@ -65,7 +65,12 @@ def run_say(options: argparse.Namespace) -> None:
         if form == ".lab":
             rows = [f"{begin / 1000:.3f} {end / 1000:.3f} {label}\n" for label, begin, end in _placed(timings or [])]
             return put("".join(rows), options.output)
-        frames = _heard(audio) if timings is None else _rendered(timings)
+        if timings is None:
+            frames = _heard(audio)
+        else:
+            from labial.runtime.render import render
+
+            frames = list(render(timings))
         if form == ".html":
             from labial.see.player import player
 
@@ -151,12 +156,6 @@ def _bands(timings: Timings) -> List[Dict[str, Any]]:
     placed = ((label, (begin + 10) // 20, (end + 10) // 20) for label, begin, end in _placed(timings))
     return [{"label": label, "start_frame": first, "frames": end - first,
              "kind": "silence" if label == "SIL" else "speech"} for label, first, end in placed if end > first]
-
-
-def _rendered(timings: Timings) -> List[Tuple[int, ...]]:
-    from labial.runtime.render import render
-
-    return list(render(timings))
 
 
 def _heard(path: str) -> List[Tuple[int, ...]]:

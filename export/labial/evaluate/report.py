@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, Iterable, List, Sequence, Tuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -197,46 +197,32 @@ def markdown(outcomes: Sequence[Outcome], options: Options, plots: Sequence[str]
     return "\n\n".join(parts) + "\n"
 
 
-def _write_csv(path: Path, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    with open(path, "w", encoding="utf-8", newline="") as out:
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
-
-
-def _key(name: str, options: Options) -> str:
-    """A method or a measure in the CSV files."""
-    return name.replace(HUMAN, "original") if options.synthetic else name
-
-
-def _table_rows(outcomes: Sequence[Outcome], methods: Sequence[str], columns: Columns,
-                options: Options) -> List[List[object]]:
-    rows: List[List[object]] = []
-    for method in methods:
-        for _, measure in columns:
-            value = cell(outcomes, method, measure)
-            rows.append([_key(method, options), _key(measure, options), f"{value.mean:.6g}", f"{value.deviation:.6g}"])
-    return rows
-
-
 def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Sequence[str] = ()) -> List[Path]:
     """Writes report.md, table1.csv to table4.csv (means and deviations) and splits.csv (every measure, every split).
     The CSV files of synthetic data say so in their names."""
     methods = methods_of(outcomes)
     written = [folder / "report.md"]
     written[0].write_text(markdown(outcomes, options, plots), encoding="utf-8")
-    tables: Dict[str, Tuple[Sequence[str], Columns]] = {
-        "table1": (methods, TABLE_1), "table2": ([HUMAN, *methods], TABLE_2[options.kind]),
-        "table3": (methods, TABLE_3), "table4": (methods, table_4(outcomes, options.kind))}
-    suffix = "_synthetic.csv" if options.synthetic else ".csv"
-    for name, (who, columns) in tables.items():
-        written.append(folder / f"{name}{suffix}")
-        rows = _table_rows(outcomes, who, columns, options)
-        _write_csv(written[-1], ("method", "measure", "mean", "deviation"), rows)
-    written.append(folder / f"splits{suffix}")
-    rows = [[item.split.number, _key(method, options), _key(measure, options), f"{value:.6g}"] for item in outcomes
-            for method, measures in item.measures.items() for measure, value in measures.items()]
-    _write_csv(written[-1], ("split", "method", "measure", "value"), rows)
+
+    def key(name: str) -> str:
+        return name.replace(HUMAN, "original") if options.synthetic else name
+
+    def write_csv(name: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+        written.append(folder / f"{name}{'_synthetic' if options.synthetic else ''}.csv")
+        with open(written[-1], "w", encoding="utf-8", newline="") as out:
+            csv.writer(out, lineterminator="\n").writerows([header, *rows])
+
+    tables: Sequence[Tuple[Sequence[str], Columns]] = (
+        (methods, TABLE_1), ([HUMAN, *methods], TABLE_2[options.kind]), (methods, TABLE_3),
+        (methods, table_4(outcomes, options.kind)))
+    for number, (who, columns) in enumerate(tables, 1):
+        cells = ((method, measure, cell(outcomes, method, measure)) for method in who for _, measure in columns)
+        write_csv(f"table{number}", ("method", "measure", "mean", "deviation"),
+                  ((key(method), key(measure), f"{found.mean:.6g}", f"{found.deviation:.6g}")
+                   for method, measure, found in cells))
+    write_csv("splits", ("split", "method", "measure", "value"),
+              ((item.split.number, key(method), key(measure), f"{value:.6g}") for item in outcomes
+               for method, measures in item.measures.items() for measure, value in measures.items()))
     return written
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import functools
 import json
 import math
 import struct
@@ -43,6 +44,7 @@ class Gltf:
         text, self._binary = _parts(self.content)
         limits.refuse(path, "its JSON has", sum(map(text.count, (b",", b"[", b"{"))), limits.AVATAR_VALUES, "values")
         self.document: Dict[str, Any] = _parsed(text)
+        self._objects = functools.partial(objects, self.document)
         self.nodes, self.meshes = self._objects("nodes"), self._objects("meshes")
         self._accessors, self._views = self._objects("accessors"), self._objects("bufferViews")
         self._buffers: Dict[int, bytes] = {}
@@ -53,9 +55,6 @@ class Gltf:
         uses = chain(self._uses_of_shapes(), self._all_uses() if everything else ())
         size = sum(self._count(number) * self._width(number) for number in uses) * _DECODED
         limits.refuse(path, "its accessors unpack to", size, limits.AVATAR_UNPACKED)
-
-    def _objects(self, key: str) -> List[Dict[str, Any]]:
-        return objects(self.document, key)
 
     # ---- Nodes
 
@@ -69,8 +68,7 @@ class Gltf:
                 parents[child] = number
         levels = {number: 1 for number in range(len(self.nodes)) if number not in parents}
         waiting = list(levels)
-        while waiting:
-            number = waiting.pop()
+        for number in waiting:  # which grows
             for child in self.nodes[number].get("children") or []:
                 levels[child] = levels[number] + 1
                 waiting.append(child)
@@ -161,19 +159,20 @@ class Gltf:
         if found.get("bufferView") is None:
             values = np.zeros((count, width), kind)
         else:
-            values = self._view(found["bufferView"], found.get("byteOffset") or 0, kind, width, count)
+            values = self._view(found, kind, width, count)
         sparse = found.get("sparse")
         if sparse and sparse["count"]:
-            where, what = sparse["indices"], sparse["values"]
+            where = sparse["indices"]
             if sparse["count"] > count:
                 raise ValueError(f"accessor {number} changes {sparse['count']} of {count} items")
-            at = self._view(where["bufferView"], where.get("byteOffset") or 0, _TYPES[where["componentType"]], 1,
-                            sparse["count"])[:, 0]
+            at = self._view(where, _TYPES[where["componentType"]], 1, sparse["count"])[:, 0]
             values = values.copy()
-            values[at] = self._view(what["bufferView"], what.get("byteOffset") or 0, kind, width, sparse["count"])
+            values[at] = self._view(sparse["values"], kind, width, sparse["count"])
         return values
 
-    def _view(self, number: int, offset: int, kind: str, width: int, count: int) -> np.ndarray:
+    def _view(self, of: Dict[str, Any], kind: str, width: int, count: int) -> np.ndarray:
+        """(`count`, `width`) from the place in a buffer view that `of` tells."""
+        number, offset = of["bufferView"], of.get("byteOffset") or 0
         view = self._views[number]
         data = self._buffer(view["buffer"])
         item = np.dtype(kind)

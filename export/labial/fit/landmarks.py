@@ -48,9 +48,9 @@ def opener(mesh: Mesh) -> Optional[str]:
     names = {plain(name): name for name in reversed(list(mesh.shapes))}
     for wanted in _OPENERS:
         for name, full in names.items():
-            if name == wanted or (len(wanted) > 2 and name.endswith(wanted)):
-                if np.abs(mesh.shapes[full]).max() > 0.0:
-                    return full
+            called = name == wanted or (len(wanted) > 2 and name.endswith(wanted))
+            if called and np.abs(mesh.shapes[full]).max() > 0.0:
+                return full
     return None
 
 
@@ -139,13 +139,11 @@ class _Face:
             if len(close):
                 best = close[np.argmax(places[close, 2])]
                 found.append((height, places[best, 2], nearest[best]))
-        if not found:
-            return np.zeros(0), np.zeros(0), np.zeros(0, int)
-        y, z, vertex = zip(*found)
-        return np.array(y), np.array(z), np.array(vertex)
+        y, z, vertex = np.array(found, float).reshape(-1, 3).T
+        return y, z, vertex.astype(int)
 
 
-def _inner(face: _Face, where: str) -> Tuple[int, int]:
+def _inner(face: _Face) -> Tuple[int, int]:
     """The middles of the inner lips: of an upper vertex that stays and a lower one that goes, near each other on the
     midline, the foremost pair."""
     for width in (0.012, 0.03, 0.06):
@@ -154,7 +152,7 @@ def _inner(face: _Face, where: str) -> Tuple[int, int]:
         lower = np.flatnonzero(middle & (face.down > 0.55 * face.jaw))
         if not len(upper) or not len(lower):
             continue
-        limits.refuse(where, "on its midline the mouth has", len(upper) * len(lower), _PAIRS, "pairs of vertices")
+        limits.refuse(face.where, "on its midline the mouth has", len(upper) * len(lower), _PAIRS, "pairs of vertices")
         apart = np.linalg.norm(face.points[upper][:, None] - face.points[lower][None], axis=2)
         torn = (face.down[lower][None] - face.down[upper][:, None]) / (apart + 0.002 * face.size)
         near = np.argwhere((torn > _TORN_MIDDLE * face.jaw / face.size) & (apart <= max(2.2 * float(apart.min()),
@@ -163,7 +161,7 @@ def _inner(face: _Face, where: str) -> Tuple[int, int]:
             front = face.points[upper][near[:, 0], 2] + face.points[lower][near[:, 1], 2]
             best = near[np.argmax(front - 1.5 * apart[near[:, 0], near[:, 1]])]
             return int(upper[best[0]]), int(lower[best[1]])
-    raise DataError(where, None, f"the seam of the lips was not found: name {', '.join(NEEDED)} with --point")
+    raise DataError(face.where, None, f"the seam of the lips was not found: name {', '.join(NEEDED)} with --point")
 
 
 def _seam(face: _Face, upper: int, lower: int, sign: float) -> List[Tuple[int, int]]:
@@ -175,7 +173,7 @@ def _seam(face: _Face, upper: int, lower: int, sign: float) -> List[Tuple[int, i
         here = pairs[-1][0]
         branches += len(face.beside(here))
         limits.refuse(face.where, "beside the seam of its lips the face has", branches, _BRANCHES, "vertices")
-        best: Optional[Tuple[float, int, int]] = None
+        steps: List[Tuple[float, int, int]] = []
         for step in face.beside(here):
             move = face.points[step] - face.points[here]
             if int(step) in seen or sign * move[0] <= 0.1 * abs(move[1]):
@@ -185,12 +183,11 @@ def _seam(face: _Face, upper: int, lower: int, sign: float) -> List[Tuple[int, i
             fits = (torn > _TORN * face.jaw / face.size) & (apart < 0.035 * face.size)
             if fits.any():
                 partner = int(np.argmin(np.where(fits, apart, np.inf)))
-                if best is None or apart[partner] < best[0]:
-                    best = (float(apart[partner]), int(step), partner)
-        if best is None:
+                steps.append((float(apart[partner]), int(step), partner))
+        if not steps:
             break
-        pairs.append(best[1:])
-        seen.add(best[1])
+        pairs.append(min(steps, key=lambda found: found[0])[1:])
+        seen.add(pairs[-1][0])
     return pairs
 
 
@@ -205,18 +202,17 @@ def _outer_corner(face: _Face, inner: int, sign: float) -> int:
 
 
 def _first_peak(z: np.ndarray) -> int:
-    """The first place in front of both sides of it."""
-    for place in range(1, len(z) - 1):
-        if z[place] >= z[place - 1] and z[place] > z[place + 1:place + 3].max():
-            return place
-    return int(np.argmax(z)) if len(z) else -1
+    """The first place in front of both sides of it; -1 without places."""
+    peaks = (place for place in range(1, len(z) - 1)
+             if z[place] >= z[place - 1] and z[place] > z[place + 1 : place + 3].max())
+    return next(peaks, int(np.argmax(z)) if len(z) else -1)
 
 
 def find(mesh: Mesh, where: str) -> Dict[str, int]:
     """Vertices of the points that can be told. Raises DataError where the lips are not found."""
     face = _Face(mesh, where)
     found: Dict[str, int] = {}
-    found["inner_upper"], found["inner_lower"] = _inner(face, where)
+    found["inner_upper"], found["inner_lower"] = _inner(face)
     middle = face.points[found["inner_upper"]]
     half = []
     for side, sign in (("left", 1.0), ("right", -1.0)):
@@ -311,21 +307,20 @@ def read_head(meshes: List[Mesh], where: str, given: Mapping[str, int]) -> Found
     if not mouth_nose > 0.0:
         raise DataError(where, None, "the nose does not lie above the mouth: --point nose=VERTEX names its base")
 
-    def leave_out(points: Tuple[str, ...], what: str) -> None:
-        if not any(point in given for point in points):
+    def leave_out(point: str, what: str) -> None:
+        if point not in given:
             doubts.append(what)
-            for point in points:
-                vertices.pop(point, None)
+            del vertices[point]
 
     for lip in ("upper", "lower"):
         thick = abs(at.get(f"outer_{lip}", at["inner_upper"])[1] - at[f"inner_{lip}"][1]) / mouth_nose
         if f"outer_{lip}" in at and not 0.08 <= thick <= 0.65:
-            leave_out((f"outer_{lip}",), f"outer {lip} lip: {thick:.2f} of the distance from nose to mouth away from "
-                                         "the inner one, which no lip is; left out")
+            leave_out(f"outer_{lip}", f"outer {lip} lip: {thick:.2f} of the distance from nose to mouth away from the "
+                                      "inner one, which no lip is; left out")
     if "chin" in at:
         below = float(at["inner_lower"][1] - at["chin"][1]) / mouth_nose
         if not 0.9 <= below <= 3.2:
-            leave_out(("chin",), f"chin: {below:.2f} times as far below the mouth as the nose is above; left out")
+            leave_out("chin", f"chin: {below:.2f} times as far below the mouth as the nose is above; left out")
     else:
         doubts.append("chin: not found; left out")
     if _faces_away(mesh):

@@ -84,10 +84,9 @@ def read_sentences(path: PathLike = SENTENCES, laughs: Sequence[float] = ()) -> 
             begin = timings[-1][2]
         if not timings:
             continue
-        lengths = [(label, round(1000.0 * (end - begin))) for label, begin, end in timings]
         with Stream(exact=True) as stream:
-            for label, milliseconds in lengths:
-                stream.push(label, milliseconds)
+            for label, start, end in timings:
+                stream.push(label, round(1000.0 * (end - start)))
             stream.end()
             spoken = list(stream)
         frames = np.array([frame.faps for frame in spoken])
@@ -196,10 +195,9 @@ class Problem:
             return np.array([(given or {}).get(group.name, 1.0) for group in self.groups])
 
         self.caps, costs = per_group(wishes.caps), per_group(wishes.costs)
-        self.owner = np.zeros(len(shapes), dtype=int)
-        for number, group in enumerate(self.groups):
-            for place, _ in group.members:
-                self.owner[place] = number
+        #: Of every shape: its group, its place among the shapes and its side.
+        self.members = [(number, *member) for number, group in enumerate(self.groups) for member in group.members]
+        self.owner = np.array([number for number, _, _ in sorted(self.members, key=lambda member: member[1])])
         self.cap, self.cost = self.caps[self.owner], costs[self.owner]
         fixed = wishes.fixed or {}
         self.free_groups = np.array([group.name not in fixed for group in self.groups])
@@ -217,18 +215,17 @@ class Problem:
         """(T, K) weights, and their derivatives by what is clipped; `soft` rounds the corner at 0."""
         values = np.empty((self.count, len(self.owner)))
         slope = np.empty_like(values)
-        for number, group in enumerate(self.groups):
-            for place, side in group.members:
-                z = self.x[side] @ slopes[number] + offsets[number]
-                cap = self.cap[place]
-                if soft:
-                    t = np.clip(z / soft, -40.0, 40.0)
-                    raised = np.where(t < 30.0, soft * np.log1p(np.exp(t)), z)
-                    values[:, place] = np.minimum(raised, cap)
-                    slope[:, place] = np.where(raised < cap, 1.0 / (1.0 + np.exp(-t)), 0.02)
-                else:
-                    values[:, place] = np.clip(z, 0.0, cap)
-                    slope[:, place] = (z > 0) & (z < cap)
+        for number, place, side in self.members:
+            z = self.x[side] @ slopes[number] + offsets[number]
+            cap = self.cap[place]
+            if soft:
+                t = np.clip(z / soft, -40.0, 40.0)
+                raised = np.where(t < 30.0, soft * np.log1p(np.exp(t)), z)
+                values[:, place] = np.minimum(raised, cap)
+                slope[:, place] = np.where(raised < cap, 1.0 / (1.0 + np.exp(-t)), 0.02)
+            else:
+                values[:, place] = np.clip(z, 0.0, cap)
+                slope[:, place] = (z > 0) & (z < cap)
         return values, slope
 
     def loss(self, weights: np.ndarray) -> Tuple[float, np.ndarray]:
@@ -300,7 +297,7 @@ class Problem:
 
 
 def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np.ndarray,
-             steps: int) -> Tuple[np.ndarray, np.ndarray, float]:
+             steps: int) -> Tuple[np.ndarray, np.ndarray]:
     """Optimises the rig from here on, with only the `live` (G, F) coefficients."""
     from scipy.optimize import minimize
 
@@ -318,10 +315,9 @@ def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np
         total, by_weight = problem.loss(weights)
         by_weight *= slope
         by_a, by_b = np.zeros(live.shape), np.zeros(len(b))
-        for number, group in enumerate(problem.groups):
-            for place, side in group.members:
-                by_a[number] += problem.x[side].T @ by_weight[:, place]
-                by_b[number] += by_weight[:, place].sum()
+        for number, place, side in problem.members:
+            by_a[number] += problem.x[side].T @ by_weight[:, place]
+            by_b[number] += by_weight[:, place].sum()
         size = packed[:count]
         rounded = np.sqrt(size * size + 1e-6)
         total += 0.02 * float(np.sum(rounded)) + 0.3 * float(size @ size)
@@ -331,14 +327,12 @@ def _descend(problem: Problem, slopes: np.ndarray, offsets: np.ndarray, live: np
     bounds = [(None, None)] * count + [(-0.6, 0.0) if free else (offset, offset)
                                        for free, offset in zip(problem.free_groups, offsets)]
     done = minimize(cost, start, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": steps, "maxcor": 30})
-    a, b = unpack(done.x)
-    return a, b, float(done.fun)
+    return unpack(done.x)
 
 
 def solve(heads: Sequence[Head], motion: Motion, wishes: Wishes) -> Solution:
     """The rig of the heads' shapes, which all heads must have in the same order. Takes seconds."""
     problem = Problem(heads, motion, wishes)
-    shape = (len(problem.groups), len(FEATURES))
     slopes, offsets = problem.slopes.copy(), problem.offsets.copy()
     weights = problem.free(200)
     for tie in np.geomspace(0.3, 300.0, 12):
@@ -346,10 +340,10 @@ def solve(heads: Sequence[Head], motion: Motion, wishes: Wishes) -> Solution:
         weights = problem.free(40, weights, problem.weights(slopes, offsets)[0], float(tie))
     problem.nearest(weights, slopes, offsets)
     live = problem.allowed & (slopes != 0.0)
-    slopes, offsets, _ = _descend(problem, slopes, offsets, live, 150)
+    slopes, offsets = _descend(problem, slopes, offsets, live, 150)
     while True:
         # What a coefficient does: how far it moves its outputs, which the loss of one that is hardly on ignores.
-        amount = np.zeros(shape)
+        amount = np.zeros(slopes.shape)
         values = problem.weights(slopes, offsets)[0]
         for number, group in enumerate(problem.groups):
             on = max(float(values[:, place].max()) for place, _ in group.members)
@@ -363,6 +357,6 @@ def solve(heads: Sequence[Head], motion: Motion, wishes: Wishes) -> Solution:
         if not dead.any():
             break
         live &= ~dead
-        slopes, offsets, _ = _descend(problem, np.where(live, slopes, 0.0), offsets, live, 40)
-    slopes, offsets, _ = _descend(problem, slopes, offsets, live, 300)
+        slopes, offsets = _descend(problem, np.where(live, slopes, 0.0), offsets, live, 40)
+    slopes, offsets = _descend(problem, slopes, offsets, live, 300)
     return Solution(problem.groups, slopes, offsets, problem.caps)

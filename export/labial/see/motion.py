@@ -12,7 +12,7 @@ import numpy as np
 from labial.corpus.folder import check_range, read_frames
 from labial.corpus.formats import read_timings
 from labial.corpus.phonesets import AUTO, LAUGHTER, SPEECH, VOWELS, PhoneSet
-from labial.corpus.timings import SourceSegment, meaning, phone_set_of
+from labial.corpus.timings import meaning, phone_set_of
 from labial.errors import DataError, LabialError, PathLike
 from labial.files.faps import CHANNELS, FAP_NUMBERS
 from labial.files.frames import opening
@@ -50,28 +50,20 @@ def read_motion(path: PathLike, timings: Optional[PathLike] = None, labels: str 
     """Reads a frames file (CSV) or an MPEG-4 text file, which the suffix .fap tells; or, by a model, makes the motion
     of phoneme timings of the format `source`. Raises DataError; LabialError for a model without timings."""
     name = Path(path).stem
-    if is_model(path):
-        if timings is None:
-            raise LabialError(f"{os.fspath(path)}: a model speaks phoneme timings: give --phones")
-        return _spoken(path, timings, labels, source, tier)
-    if Path(path).suffix.lower() == ".fap":
-        return Motion(name, *read_fap(path))
-    return Motion(name, *read_frames(path))
-
-
-def _spoken(model: PathLike, timings: PathLike, labels: str, source: Optional[str], tier: Optional[str]) -> Motion:
-    """The motion of a model (a file, or a bundled one's name) that speaks phoneme timings of any format. Raises
-    DataError."""
+    if not is_model(path):
+        return Motion(name, *(read_fap if Path(path).suffix.lower() == ".fap" else read_frames)(path))
+    if timings is None:
+        raise LabialError(f"{os.fspath(path)}: a model speaks phoneme timings: give --phones")
     from labial.reference.synthesis import delivered
     from labial.reference.visemes import shares
     from labial.tables.model import load
     from labial.tables.phones import read_stream
 
-    read = load(model)
-    phonemes = read_stream(timings, read, labels, source, tier)
-    frames = np.concatenate(list(delivered(read, phonemes)))
-    sounds = shares([(read.phonemes[number], milliseconds) for number, milliseconds in phonemes], read.fps, len(frames))
-    return Motion(Path(model).stem, np.arange(len(frames)) / read.fps, frames, sounds)
+    model = load(path)
+    phonemes = read_stream(timings, model, labels, source, tier)
+    frames = np.concatenate(list(delivered(model, phonemes)))
+    spoken = [(model.phonemes[number], milliseconds) for number, milliseconds in phonemes]
+    return Motion(name, np.arange(len(frames)) / model.fps, frames, shares(spoken, model.fps, len(frames)))
 
 
 def read_motions(paths: Sequence[PathLike], timings: Optional[PathLike] = None, labels: str = AUTO,
@@ -106,9 +98,9 @@ def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
         if len(mask) not in (_MASK, _MASK + 1) or set(mask) - {"0", "1"}:
             raise DataError(path, mask_line, f"expected a mask of {_MASK} zeros and ones")
         chosen = [number for number, bit in enumerate(mask, 1) if bit == "1"]
-        wrong = next((value for value in values if not is_whole(value[value.startswith("-") :])), None)
-        if wrong is not None:
-            raise DataError(path, line, f"not a whole number: {shown(wrong)}")
+        for text in values:
+            if not is_whole(text[text.startswith("-") :]):
+                raise DataError(path, line, f"not a whole number: {shown(text)}")
         numbers = [int(value) for value in values]
         if len(numbers) != 1 + len(chosen):
             raise DataError(path, line, f"expected the frame's number and {len(chosen)} values, as the mask says, "
@@ -130,7 +122,9 @@ def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[st
         return []
     segments = [segment for segment in read_timings(path, source, tier=tier) if segment.end > segment.start]
     phones = phone_set_of(segments, labels)
-    return [Band(segment.start, segment.end, *_named(segment, phones, labels)) for segment in segments]
+    named = [(segment, meaning(segment, phones, labels)) for segment in segments]
+    return [Band(segment.start, segment.end, segment.label if name is None else name,
+                 "other" if name is None else kind_of(name, phones)) for segment, name in named]
 
 
 def closures(motion: Motion, bands: Sequence[Band]) -> List[Tuple[str, float]]:
@@ -158,8 +152,3 @@ def kind_of(label: str, phones: PhoneSet) -> str:
         name = phones.classes[phones.viseme_class[phones.phonemes.index(label)]]
         return {"bilabial": "closed", "labiodental": "labiodental"}.get(name, "other")
     return "vowel" if phones.boundary[phones.phonemes.index(label)] else "other"
-
-
-def _named(segment: SourceSegment, phones: PhoneSet, labels: str) -> Tuple[str, str]:
-    name = meaning(segment, phones, labels)
-    return (segment.label, "other") if name is None else (name, kind_of(name, phones))

@@ -32,11 +32,8 @@ _SAID: Tuple[Sound, ...] = (
 )
 
 
-def _rendered(phonemes: List[Tuple[str, int]]) -> np.ndarray:
-    return np.asarray(render(phonemes))
-
-
-def said(sounds: Sequence[Sound] = _SAID, speak: Speak = _rendered) -> Tuple[List[str], np.ndarray]:
+def said(sounds: Sequence[Sound] = _SAID,
+         speak: Speak = lambda phonemes: np.asarray(render(phonemes))) -> Tuple[List[str], np.ndarray]:
     """Captions, and (N, 13) FAPs of the middle of each phoneme; of the frame in which the lips are nearest in one that
     closes them."""
     frames = []

@@ -8,15 +8,15 @@ from __future__ import annotations
 import os
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, Sequence, Tuple, Union
+from typing import Any, Callable, Iterable, Iterator, List, NamedTuple, Sequence, Union
 
 import matplotlib
 import numpy as np
-from matplotlib import pyplot as pyplot  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from matplotlib.patches import Patch  # noqa: E402
-from matplotlib.text import Text  # noqa: E402
+from matplotlib import pyplot as pyplot
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from labial.errors import LabialError, PathLike
 from labial.files import limits
@@ -172,20 +172,15 @@ def panels(channels: str) -> List[_Panel]:
     return found
 
 
-def _span(motions: Sequence[Motion], bands: Sequence[Band]) -> Tuple[float, float]:
-    starts = [float(motion.times[0]) for motion in motions] + [band.start for band in bands[:1]]
-    ends = [float(motion.times[-1]) for motion in motions] + [band.end for band in bands[-1:]]
-    first, last = min(starts), max(ends)
-    return first, last if last > first else first + 0.04
-
-
 def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike, channels: str = DEFAULT) -> None:
     """Writes the plot of one motion or more to `path` (.png, .svg or .pdf). Raises LabialError for another suffix and
     for channels that do not exist."""
     if Path(path).suffix.lower() not in _SUFFIXES:
         raise LabialError(f"{os.fspath(path)}: the name of a plot ends in {', '.join(_SUFFIXES)}")
     rows = panels(channels)
-    first, last = _span(motions, bands)
+    first = min([float(motion.times[0]) for motion in motions] + [band.start for band in bands[:1]])
+    last = max([float(motion.times[-1]) for motion in motions] + [band.end for band in bands[-1:]])
+    last = last if last > first else first + 0.04
     width = min(max(9.0, 2.2 + 2.6 * (last - first)), _LONGEST_AXIS)
     upright = laughs(bands)
     top = 0.75 if upright else 0.45
