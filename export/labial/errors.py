@@ -56,14 +56,12 @@ def did_you_mean(name: object, known: Iterable[str]) -> str:
 
 
 def missing(what: str, thing: str, command: str) -> LabialError:
-    """The error that `what`, such as "training", needs a package or a program that is not there, which `command`
-    installs."""
+    """The error that `what`, such as "training", needs a package or a program, which `command` installs."""
     return LabialError(f"{what} needs {thing}: {command}")
 
 
 def pip(extra: str = "") -> str:
-    """The command that installs this package with an extra. Only its folder has it: other packages on an index may bear
-    its name."""
+    """The command that installs this package with an extra, from its folder: on an index others may bear its name."""
     target = f"'.[{extra}]'" if extra else "."
     return f"pip install {target} in Labial's folder (docs/install.md)"
 
@@ -75,7 +73,7 @@ def apt(package: str) -> str:
 
 @contextmanager
 def needs(what: str, extra: str) -> Iterator[None]:
-    """Wraps the imports of an optional package: a LabialError says that `what`, such as "training", needs it, and which
+    """Wraps imports of optional packages: a LabialError says that `what`, such as "training", needs one, and which
     `extra` of this package installs it."""
     try:
         yield

@@ -26,8 +26,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def number(least: float, most: float) -> Callable[[str], float]:
-    """The `type` of an argument that is a number from `least` to `most`; :func:`labial.files.grammar.whole` is that of
-    whole ones."""
+    """The `type` of a number from `least` to `most`; :func:`labial.files.grammar.whole` is that of whole ones."""
     def read(text: str) -> float:
         try:
             value = float(text)

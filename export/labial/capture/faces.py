@@ -12,8 +12,7 @@ from labial.defaults import WHICH_FACE
 from labial.errors import DataError, PathLike
 from labial.files.frames import spans_told
 
-#: A face that is lost for longer, in seconds, starts a new track, which is joined to the old one if both are in one
-#: place.
+#: A face that is lost for longer, in seconds, starts a new track, joined to the old one if both are in one place.
 _LINK = 0.5
 #: Two faces are one where their middles are less than this share of the height apart, from frame to frame and at all.
 _STEP, _PLACE = 0.5, 1.0

@@ -21,12 +21,10 @@ if TYPE_CHECKING:
 
 
 def add_kind(command: argparse.ArgumentParser) -> None:
-    """``--kind``."""
     command.add_argument("--kind", choices=KINDS, default=KINDS[0])
 
 
 def add_fps(command: argparse.ArgumentParser) -> None:
-    """``--fps`` of a model."""
     command.add_argument("--fps", type=positive, default=FPS, help=f"frames per second ({FPS})")
 
 
@@ -80,8 +78,7 @@ class Limited:
         self._unit, self._rig = rig.unit, Rig.of(rig)
 
     def __call__(self, frames: np.ndarray, shares: Optional[np.ndarray], first: int) -> Dict[str, np.ndarray]:
-        """What ``animation.outputs`` gives, for frames from number `first` on, which go on from those before. They look
-        ahead as far as the last of them."""
+        """What ``animation.outputs`` gives, for frames from number `first` on, which go on from those before."""
         import numpy as np
 
         from labial.files.frames import whole_faps, whole_shares
@@ -113,7 +110,6 @@ def format_of(options: argparse.Namespace) -> Format:
 
 
 def add_labels(command: argparse.ArgumentParser) -> None:
-    """``--labels``, the set of the labels of timings."""
     from labial.corpus.phonesets import AUTO, LABEL_SETS
 
     command.add_argument("--labels", choices=(AUTO, *LABEL_SETS), default=AUTO,
@@ -122,14 +118,12 @@ def add_labels(command: argparse.ArgumentParser) -> None:
 
 
 def add_phones(command: argparse.ArgumentParser) -> None:
-    """``--phones``, the timings of a motion, with their format and labels."""
     command.add_argument("--phones", metavar="FILE", help="phoneme timings, as for synth")
     add_source(command)
     add_labels(command)
 
 
 def add_said(command: argparse.ArgumentParser) -> None:
-    """``--text`` and ``--text-file``, the text of a sound; see :func:`said`."""
     group = command.add_mutually_exclusive_group()
     group.add_argument("--text", help="what is said in a sound; without it the likeliest words are looked for, which "
                        "is less sure")
@@ -142,7 +136,6 @@ def said(options: argparse.Namespace) -> Optional[str]:
 
 
 def add_quiet(command: argparse.ArgumentParser, bars: str = "bar") -> None:
-    """``--quiet``; see :func:`shows_progress`."""
     command.add_argument("--quiet", action="store_true", help=f"no progress {bars}")
 
 

@@ -1,5 +1,4 @@
-"""``labial timings``, ``align``, ``landmarks``, ``record``, ``laughter-corpus`` and ``speech-corpus``: what models
-learn from."""
+"""The commands that make what models learn from: timings, landmarks and corpora."""
 
 from __future__ import annotations
 

@@ -1,5 +1,4 @@
-"""``labial evaluate`` and ``labial evaluate-hear``: all methods against human motion; lips from sound against lips in
-videos, or against lips from true timings."""
+"""``labial evaluate`` and ``labial evaluate-hear``."""
 
 from __future__ import annotations
 

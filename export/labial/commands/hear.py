@@ -101,8 +101,7 @@ class _Words(NamedTuple):
 
 
 def _words(options: argparse.Namespace) -> Optional[_Words]:
-    """The phonemes of a file's sound: those that are given, those of its text, or those of the words that are found;
-    None for the sound alone."""
+    """The phonemes of a file's sound: given ones, those of its text or of words that are found; None without any."""
     from labial.runtime.hearing import SHARE
 
     if options.phones is not None:
@@ -155,8 +154,7 @@ def _mixed(words: _Words, heard: np.ndarray, exact: bool) -> np.ndarray:
 
 
 def sound_of(path: str) -> Tuple[int, int, bytes]:
-    """Rate, channels and samples of a file. A WAV file of 16 bits is heard as it is, all else as the reader of ``labial
-    align`` converts it."""
+    """Rate, channels and samples of a file, converted as for ``labial align`` unless it is a WAV file of 16 bits."""
     try:
         with open(path, "rb") as content, wav.Sound(content) as file:
             if _is_plain(file):
@@ -179,8 +177,7 @@ def _is_plain(file: wav.Sound) -> bool:
 
 
 def _in_phase(blocks: Iterator[bytes], channels: int, path: str) -> Iterator[bytes]:
-    """Blocks of 16 bits. Where two channels cancel each other, their mean would be silence: the second becomes the
-    first."""
+    """Blocks of 16 bits. Of two channels that cancel each other to silence, the second becomes the first."""
     import numpy as np
 
     phase = wav.Phase(path)

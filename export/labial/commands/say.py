@@ -152,7 +152,6 @@ def _placed(timings: Timings) -> List[Tuple[str, int, int]]:
 
 
 def _bands(timings: Timings) -> List[Dict[str, Any]]:
-    """Phonemes as the page shows them."""
     placed = ((label, (begin + 10) // 20, (end + 10) // 20) for label, begin, end in _placed(timings))
     return [{"label": label, "start_frame": first, "frames": end - first,
              "kind": "silence" if label == "SIL" else "speech"} for label, first, end in placed if end > first]

@@ -36,8 +36,7 @@ LARGEST = 1.0
 RMS = 0.25
 #: Against the float model: root mean square in percent of each channel's range.
 SHARE = 1.0
-#: With fewer frames (20 s) that share is not judged: one phoneme for which the rounded tables find another path exceeds
-#: it.
+#: With fewer frames (20 s) that share is not judged: one phoneme with another path in the rounded tables exceeds it.
 FRAMES = 1000
 
 
@@ -114,16 +113,8 @@ def stream_frames(model: DeviceModel, phonemes: Sequence[Tuple[int, int]]) -> np
         return np.array(stream.drain(), dtype=np.int64).reshape(-1, CHANNELS)
 
 
-def _of_kept_transitions(model: Model, exported: ExportedModel) -> Model:
-    """The model with only its exported transitions; `labial export` reports the loss of dropping the others."""
-    kept = np.ones(model.log_transition.shape, dtype=bool)
-    kept[solved(exported.source)] = np.isfinite(exported.dense_transitions())
-    return replace(model, log_transition=np.where(kept, model.log_transition, -np.inf))
-
-
 def compare(model: Model, exported: ExportedModel, streams: Sequence[Stream]) -> Comparison:
-    """Runs `streams` through the library and through both references. Raises ModelError for a model of Labial's method
-    and a library of the published one."""
+    """Runs `streams` through the library and both references. Raises ModelError where their methods differ."""
     to_the_letter = method() == "paper"
     if to_the_letter and not is_published(model):
         raise ModelError("the run-time is built for the published method (LABIAL_METHOD=paper), and the model is not: "
@@ -131,7 +122,11 @@ def compare(model: Model, exported: ExportedModel, streams: Sequence[Stream]) ->
     frames = np.concatenate(device_frames(exported, streams))
     tables = ExportedTables(exported)
     as_built = published.synthesise if to_the_letter else as_device
-    ideal = model if is_published(model) else _of_kept_transitions(model, exported)
+    ideal = model
+    if not is_published(model):  # with its exported transitions alone; `labial export` tells the loss of the others
+        kept = np.ones(model.log_transition.shape, dtype=bool)
+        kept[solved(exported.source)] = np.isfinite(exported.dense_transitions())
+        ideal = replace(model, log_transition=np.where(kept, model.log_transition, -np.inf))
     same = np.concatenate([as_built(tables, stream) for stream in streams])
     wanted = np.concatenate([synthesise(ideal, stream) for stream in streams])
     lengths = np.cumsum([frames_of(model, stream) for stream in streams])[:-1]

@@ -63,8 +63,7 @@ def setting(task: Task) -> Setting:
 
 
 def table(head: str, titles: Sequence[str], outcomes: Sequence[Sequence[Dict[str, float]]]) -> str:
-    """Markdown: variants by `titles` down, means over the splits across. An outcome has the measures of each variant on
-    one split."""
+    """Markdown: variants by `titles` down, means over the splits across, of which each outcome has all variants'."""
     rows = [f"| {head} | " + " | ".join(name for name, _ in COLUMNS) + " |", "|---" * (len(COLUMNS) + 1) + "|"]
     for index, title in enumerate(titles):
         values = [np.mean([split[index][measure] for split in outcomes]) for _, measure in COLUMNS]
@@ -115,8 +114,7 @@ class Choice:
 
 
 def _cut_in_the_middle(pieces: Sequence[published.Piece], trajectories: Sequence[np.ndarray]) -> np.ndarray:
-    """:func:`labial.reference.published.join` without a cross-fade: a piece ends in the middle of the frames that it
-    shares with the next."""
+    """:func:`labial.reference.published.join`, but pieces are cut in the middle of the frames that they share."""
     result = np.zeros((pieces[-1].end if pieces else 0, CHANNELS))
     for piece, motion in zip(pieces, trajectories):
         begin = piece.fade_in - piece.fade_in // 2
@@ -167,7 +165,6 @@ CHOICES: Dict[str, Tuple[Choice, ...]] = {
 
 @contextmanager
 def _made(choice: Choice) -> Iterator[None]:
-    """Applies the choice's replacements within the block."""
     with ExitStack() as stack:
         for (module, name), value in choice.replaced.items():
             stack.callback(setattr, module, name, getattr(module, name))

@@ -1,5 +1,4 @@
-"""The loss of exporting: the exported tables against the float model, and the run-time's deviation from the published
-method."""
+"""The loss of exporting, tables against the float model; the run-time's deviation from the published method."""
 
 from __future__ import annotations
 
@@ -44,17 +43,13 @@ class Deviation:
 
 @dataclass(frozen=True)
 class Loss:
-    """Per channel, (13,): `rms` and `largest` difference between the motions of the float model, by the reference of
-    its method, and of the exported tables, FAP; `extent`, the 1 to 99 percentile range that `rms` is held against, FAP;
-    `path`, nats of likelihood per state that the exported tables' state paths lose against the most probable path of
-    the whole stream. `by_design`, of a model of the published method, is how the device differs from that over all
-    channels."""
+    """Per channel, (13,): motion of the exported tables against the float model's, by the reference of its method."""
 
-    rms: np.ndarray
-    largest: np.ndarray
-    extent: np.ndarray
-    path: np.ndarray
-    by_design: Optional[Deviation]
+    rms: np.ndarray  #: FAP
+    largest: np.ndarray  #: FAP
+    extent: np.ndarray  #: FAP: the 1 to 99 percentile range that `rms` is held against
+    path: np.ndarray  #: nats per state that the exported tables' paths lose against the stream's most probable path
+    by_design: Optional[Deviation]  #: of a model of the published method
 
     @property
     def share(self) -> np.ndarray:
@@ -63,8 +58,7 @@ class Loss:
 
 
 def channel_extent(model: Model, motion: np.ndarray) -> np.ndarray:
-    """(13,) FAP: the 1 to 99 percentile range of each channel in the model's corpus, or in `motion` (T, 13) where the
-    model does not tell."""
+    """(13,) FAP: the 1 to 99 percentile range of the model's corpus; of `motion` (T, 13) where it does not tell."""
     known = model.training.get("channel_range")
     if isinstance(known, list) and len(known) == CHANNELS:
         return np.asarray(known, dtype=np.float64)
@@ -97,8 +91,8 @@ def deviation(model: Model, streams: Sequence[Stream], published: np.ndarray, fo
 
 
 def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.ndarray:
-    """(1, 13) nats per state by which the exported tables' path is less likely than the best, by the float tables; 0
-    in those that follow others."""
+    """(1, 13) nats per state by which, by the float tables, the exported ones' path is less likely than the best; 0 in
+    channels that follow others."""
     wanted, _, _ = aims(ideal, stream)
     given, _, ends = aims(tables, stream)
     taken = tables.search(given, ends)

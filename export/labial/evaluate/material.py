@@ -220,8 +220,7 @@ def make_splits(corpus: Sequence[Utterance], count: int, seed: int, held_out: Se
 
 
 def leave_talkers_out(corpus: Sequence[Utterance], first: int) -> List[Split]:
-    """One split for each talker of the further corpora, with a training part of the first corpus, the `first`
-    utterances, and the other talkers."""
+    """A split for each talker of the further corpora, with the `first` utterances, those of the first, to train on."""
     talkers = list(dict.fromkeys(item.episode.source.talker for item in corpus[first:]))
     if not talkers:
         raise LabialError("a talker is left out of a second corpus, but there is only one")

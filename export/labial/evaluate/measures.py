@@ -1,5 +1,4 @@
-"""The measures: one method's motion on the test part, compared with the human's, as named numbers (docs/method.md, How
-it is judged)."""
+"""The measures of a method's motion against the human's, as named numbers (docs/method.md, How it is judged)."""
 
 from __future__ import annotations
 
@@ -15,8 +14,7 @@ from labial.reference.published import pieces
 
 #: Lips count as closed below this percentile of the openness of all training frames but silence.
 CLOSED_PERCENTILE = 20.0
-#: In speech they count as firmly closed below this percentile of the human's least openness in the training part's #:
-#: p, b, m.
+#: In speech they are firmly closed below this percentile of people's least openness in the training part's p, b, m.
 FIRM_PERCENTILE = 50.0
 #: A closure is searched in its segment and this many seconds to both sides.
 CLOSURE_REACH = 0.04

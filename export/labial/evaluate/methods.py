@@ -1,5 +1,4 @@
-"""The methods by name, in the order of the tables; the trained ones here: the published method and Labial in float64,
-and Labial in the C library."""
+"""The methods by name, in the order of the tables."""
 
 from __future__ import annotations
 

@@ -75,9 +75,8 @@ def in_browser(sound: np.ndarray) -> np.ndarray:
 
 
 def levels(samples: np.ndarray) -> np.ndarray:
-    """(K, 1024) uint8: what getByteFrequencyData() of an AnalyserNode with default settings tells of (M,) samples when
-    it is called `PER_SECOND` times a second: of the magnitudes of a spectrum behind a Blackman window, smoothed from
-    call to call, in dB."""
+    """(K, 1024) uint8: what getByteFrequencyData() of an AnalyserNode with default settings tells of (M,) samples,
+    called `PER_SECOND` times a second: dB of a spectrum behind a Blackman window, smoothed from call to call."""
     turn = 2 * np.pi * np.arange(FFT) / FFT
     window = 0.42 - 0.5 * np.cos(turn) + 0.08 * np.cos(2 * turn)
     calls = -(-len(samples) * PER_SECOND // BROWSER_RATE)
@@ -94,8 +93,7 @@ def levels(samples: np.ndarray) -> np.ndarray:
 
 
 def run(node: str, package: str, modules: Path, given: bytes) -> np.ndarray:
-    """(K, ways, visemes) weights, `PER_SECOND` rows a second, that a package makes of what it hears. Raises LabialError
-    if it fails."""
+    """(K, ways, visemes) weights, `PER_SECOND` rows a second, of what a package hears. Raises LabialError."""
     command = [node, str(Path(__file__).with_suffix(".mjs")), package, str(modules), ",".join(VISEMES)]
     ways = 2 if package == "wawa-lipsync" else 1
     return np.frombuffer(voices.run(package, command, given), "<f4").reshape(-1, ways, len(VISEMES))

@@ -99,8 +99,7 @@ def remove_kept(folder: Path) -> None:
 
 
 def _fingerprint(corpus: Sequence[Utterance], options: Options) -> str:
-    """A checksum of everything that outcomes depend on, including Labial's code, so that no report mixes two versions
-    of it."""
+    """A checksum of everything that outcomes depend on, Labial's code too, so that no report mixes two versions."""
     found = hashlib.sha256()
     sources = list(Path(labial.__file__).parent.rglob("*.py"))
     with suppress(LabialError):  # without the library the methods that need it report an error

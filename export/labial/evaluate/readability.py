@@ -59,9 +59,8 @@ class Token(NamedTuple):
 
 
 def spoken(item: Utterance, silence: int) -> List[Tuple[str, int, int]]:
-    """The words of an utterance in order: word, first frame and the frame after the last. A word is a run of segments
-    with its name; silence has none. A word may have no frame. "with" and "with(2)", which aligners use for
-    pronunciations, are one word."""
+    """The words of an utterance in order: word, first frame and the frame after the last, of each run of segments with
+    its name; there may be no frame. "with" and "with(2)", which aligners use for pronunciations, are one word."""
     given, found, last = item.timeline, [], None
     for index, word in enumerate(item.words):
         word = None if word is None or given.phoneme[index] == silence else _VARIANT.sub("", word)
@@ -139,7 +138,8 @@ class LipReader:
         said = [[word for word, _, _ in spoken(item, self._silence)] for item in [*training.utterances, *test]]
         classes = word_classes(said)
         if words is None:
-            tests = [self._known(training.utterances, own) for own in classes]
+            tests = [self._make(training.utterances, self._tokens(training.utterances, own),
+                                self._tokens(self._test, own)) for own in classes]
         else:
             part = self._random.permutation(len(self._test)) % FOLDS
             judged = {_VARIANT.sub("", word) for word in words}
@@ -163,9 +163,6 @@ class LipReader:
             return []
         reader = Reader(self._seen([item.human for item in items], learned), [item.word for item in learned])
         return [_Test(reader, read, self._random.integers(0, len(learned), (REPEATS, len(read))))]
-
-    def _known(self, training: Sequence[Utterance], words: Sequence[str]) -> List[_Test]:
-        return self._make(training, self._tokens(training, words), self._tokens(self._test, words))
 
     def _unseen(self, words: Sequence[str], part: np.ndarray) -> List[_Test]:
         """`part` (n,) is the part of each test utterance."""

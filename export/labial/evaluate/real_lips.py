@@ -92,21 +92,15 @@ def group(folders: Sequence[PathLike]) -> Group:
     :func:`labial.corpus.corpora.read_corpus`, for energies that are not what this module describes, and for a folder
     without sound."""
     clips: List[Clip] = []
-    for folder in folders:
-        found = _clips(folder)
+    for folder in map(Path, folders):
+        episodes = {episode.name: episode for episode in read_corpus(folder)}
+        path = folder / ENERGIES
+        found = _kept(path, episodes) if path.exists() else {
+            name: energies for name in episodes if (energies := _sound(folder, name)) is not None}
         if not found:
             raise DataError(folder, None, f"no episode has its sound: neither {ENERGIES} nor sounds are there")
-        clips += found
+        clips += [_clip(episodes[name], energies) for name, energies in found.items()]
     return Group("+".join(Path(folder).resolve().name for folder in folders), clips)
-
-
-def _clips(folder: PathLike) -> List[Clip]:
-    episodes = {episode.name: episode for episode in read_corpus(folder)}
-    path = Path(folder) / ENERGIES
-    if path.exists():
-        return [_clip(episodes[name], energies) for name, energies in _kept(path, episodes).items()]
-    sounds = ((episode, _sound(Path(folder), name)) for name, episode in episodes.items())
-    return [_clip(episode, energies) for episode, energies in sounds if energies is not None]
 
 
 def _clip(episode: Episode, energies: np.ndarray) -> Clip:

@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import Dict, Iterable, List, Sequence, Tuple
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from labial.corpus.phonesets import PHONE_SETS
 from labial.evaluate.material import Example, Options, Outcome, bands
@@ -20,7 +18,7 @@ from labial.evaluate.measures import JUDGED, JUDGED_NAMES, LIPS, PARAMETERS, gro
 from labial.evaluate.methods import METHODS
 from labial.evaluate.protocol import HUMAN
 from labial.see import plot
-from labial.see.motion import Band, kind_of
+from labial.see.motion import kind_of
 from labial.see.plot import COLOURS, pyplot, style
 
 #: Column title and measure.
@@ -143,8 +141,7 @@ def markdown_table(outcomes: Sequence[Outcome], methods: Sequence[str], columns:
 
 
 def talkers_table(outcomes: Sequence[Outcome], methods: Sequence[str]) -> str:
-    """Methods down; the correlation with each talker left out, their mean and its standard error, and the mean of each
-    of the LIPS across."""
+    """Methods down; correlation with each talker left out, their mean, its standard error, and means of LIPS across."""
     talkers = [item.split.talker for item in outcomes]
     columns = [*talkers, "mean", "standard error", *LIPS]
     rows = [f"| method | {' | '.join(columns)} |", "|---" * (len(columns) + 1) + "|"]
@@ -232,53 +229,30 @@ LONGEST = 5
 DRAWN = ("hmm_synthesis", "paper", "labial")
 
 
-def _stretch(example: Example) -> Tuple[int, int, str]:
-    """First frame, end frame and name of the word, or train of pulses, that is shown; else the whole utterance."""
-    given = example.utterance.timeline
-    if example.stretch is None:
-        return 0, given.frames, ""
-    first, last = example.stretch
-    return int(given.start[first]), int(given.start[last] + given.length[last]), example.utterance.words[first] or ""
-
-
-def _around(example: Example, fps: int) -> Tuple[int, int]:
-    """First and end frame of LONGEST seconds of the utterance, around what :func:`_stretch` shows."""
-    total = example.utterance.timeline.frames
-    first, last, _ = _stretch(example)
-    begin = min(max((first + last - LONGEST * fps) // 2, 0), max(total - LONGEST * fps, 0))
-    return begin, min(begin + LONGEST * fps, total)
-
-
-def _name(example: Example, options: Options) -> str:
-    return example.utterance.episode.name + (", synthetic data" if options.synthetic else "")
-
-
-def _curves(axes: Axes, example: Example, frames: slice, channel: int, options: Options) -> None:
-    """The original and the methods, over the phonemes."""
-    plot.shade(axes, _bands(example, frames, options))
-    time = (np.arange(frames.start, frames.stop) + 0.5) / options.fps
-    original = title(HUMAN, options.synthetic)
-    axes.plot(time, example.utterance.human[frames, channel], color="black", linewidth=1.6, label=original)
-    drawn = [name for name in DRAWN if name in example.motion] or list(example.motion)[-2:]
-    for name, colour in zip(drawn, COLOURS):
-        axes.plot(time, example.motion[name][frames, channel], color=colour, linewidth=1.3, label=title(name))
-    axes.set_xlim(frames.start / options.fps, frames.stop / options.fps)
-
-
-def _bands(example: Example, frames: slice, options: Options) -> List[Band]:
-    phones = PHONE_SETS[example.kind]
+def _figure(example: Example, options: Options, path: Path, span: Tuple[int, int], size: Tuple[float, float],
+            labels: Sequence[str], about: str, with_steps: bool) -> str:
+    """The original and the methods over the phonemes from the first to the end frame of `span`, a channel above each of
+    `labels`; returns the file's name."""
+    frames, fps, phones = slice(*span), options.fps, PHONE_SETS[example.kind]
     kinds = [kind_of(label, phones) for label in phones.phonemes]
-    return bands(example.utterance.timeline, phones.phonemes, kinds, options.fps, frames.start, frames.stop)
-
-
-def _finish(figure: Figure, every: Sequence[Axes], example: Example, frames: slice, options: Options,
-            path: Path) -> str:
-    """Phonemes above the first axes, the legend below the last, and the file; returns its name."""
-    shown = _bands(example, frames, options)
-    curves = every[0].get_legend_handles_labels()[0]
-    patches = list(plot.legend_patches(shown))
+    shown = bands(example.utterance.timeline, phones.phonemes, kinds, fps, *span)
+    drawn = [name for name in DRAWN if name in example.motion] or list(example.motion)[-2:]
+    time = (np.arange(*span) + 0.5) / fps
+    figure, every = pyplot.subplots(len(labels), 1, figsize=size, sharex=True)
+    for axes, k, label in zip(every, JUDGED, labels):
+        if with_steps:
+            edges = np.arange(span[0], span[1] + 1) / fps
+            axes.stairs(example.steps[frames, k], edges, color="0.5", label="step stream (eq. 2)", baseline=None)
+        plot.shade(axes, shown)
+        axes.plot(time, example.utterance.human[frames, k], color="black", linewidth=1.6,
+                  label=title(HUMAN, options.synthetic))
+        for name, colour in zip(drawn, COLOURS):
+            axes.plot(time, example.motion[name][frames, k], color=colour, linewidth=1.3, label=title(name))
+        axes.set_xlim(span[0] / fps, span[1] / fps)
+        axes.set_ylabel(label)
+    every[-1].set_xlabel(about)
     figure.align_ylabels(every)
-    handles = [*curves, *patches]
+    handles = [*every[0].get_legend_handles_labels()[0], *plot.legend_patches(shown)]
     figure.legend(handles=handles, loc="lower center", ncol=len(handles) if len(handles) <= 7 else 5, frameon=False,
                   fontsize=7.5, columnspacing=1.6)
     room = (0, (0.25 if len(handles) <= 7 else 0.42) / figure.get_figheight(), 1, 1)  # below it is the legend
@@ -289,29 +263,21 @@ def _finish(figure: Figure, every: Sequence[Axes], example: Example, frames: sli
     return path.name
 
 
-def step_stream(example: Example, options: Options, folder: Path) -> str:
-    """The paper's figure 3: step stream and smoothed curve over one word, or one train of pulses."""
-    begin, end, word = _stretch(example)
-    frames = slice(begin, end)
-    figure, every = pyplot.subplots(2, 1, figsize=(8.5, 6), sharex=True)
-    for axes, k, channel in zip(every, JUDGED, JUDGED_NAMES):
-        edges = np.arange(begin, end + 1) / options.fps
-        axes.stairs(example.steps[frames, k], edges, color="0.5", label="step stream (eq. 2)", baseline=None)
-        _curves(axes, example, frames, k, options)
-        axes.set_ylabel(f"{channel}, FAP units")
-    every[-1].set_xlabel(f"seconds, {_name(example, options)}" + (f', "{word}"' if word else ""))
-    return _finish(figure, every, example, frames, options, folder / "steps_and_curve.png")
-
-
-def trajectories(example: Example, options: Options, folder: Path) -> str:
-    """The paper's figure 6: human and synthetic trajectories of an utterance, at most LONGEST seconds."""
-    frames = slice(*_around(example, options.fps))
-    figure, every = pyplot.subplots(len(JUDGED), 1, figsize=(11, 9), sharex=True)
-    for axes, k, channel in zip(every, JUDGED, JUDGED_NAMES):
-        _curves(axes, example, frames, k, options)
-        axes.set_ylabel(channel)
-    every[-1].set_xlabel(f"seconds, {_name(example, options)}; FAP units")
-    return _finish(figure, every, example, frames, options, folder / "trajectories.png")
+def _figures(example: Example, options: Options, folder: Path) -> List[str]:
+    """The paper's figure 3, step stream and smoothed curve over one word, or one train of pulses; and its figure 6,
+    trajectories of the utterance, at most LONGEST seconds around that. Without such a stretch both show all of it."""
+    given, most = example.utterance.timeline, LONGEST * options.fps
+    begin, end, word = 0, given.frames, None
+    if example.stretch is not None:
+        first, last = example.stretch
+        begin, end = int(given.start[first]), int(given.start[last] + given.length[last])
+        word = example.utterance.words[first]
+    around = min(max((begin + end - most) // 2, 0), max(given.frames - most, 0))
+    about = f"seconds, {example.utterance.episode.name}" + (", synthetic data" if options.synthetic else "")
+    return [_figure(example, options, folder / "steps_and_curve.png", (begin, end), (8.5, 6),
+                    [f"{name}, FAP units" for name in JUDGED_NAMES[:2]], about + (f', "{word}"' if word else ""), True),
+            _figure(example, options, folder / "trajectories.png", (around, min(around + most, given.frames)), (11, 9),
+                    JUDGED_NAMES, f"{about}; FAP units", False)]
 
 
 def _bars(outcomes: Sequence[Outcome], groups: Sequence[Tuple[str, str]], label: str, options: Options,
@@ -339,7 +305,7 @@ def draw(outcomes: Sequence[Outcome], options: Options, folder: Path) -> List[st
     names = []
     example = next((item.example for item in outcomes if item.example is not None), None)
     if example is not None:
-        names += [step_stream(example, options, folder), trajectories(example, options, folder)]
+        names += _figures(example, options, folder)
     apart = folder / f"error_per_{grouping(options.kind)}.png"
     names.append(_bars(outcomes, table_4(outcomes, options.kind), "mean diff", options, apart))
     channels = [(name, f"amplitude/{name}") for name in JUDGED_NAMES]

@@ -25,8 +25,7 @@ from labial.rig.table import holds
 
 #: Intensities of the laughs that are solved for, in addition to the sentences.
 _LAUGHS = (0.5, 1.0)
-#: Millimetres beyond the FAPs' meaning from which on a mouth that moves sideways, or whose corners differ in height,
-#: looks crooked.
+#: Millimetres, beyond what FAPs mean, of motion sideways or between the corners' heights that make a mouth crooked.
 _CROOKED = 1.0
 #: Shapes that a line of the report names at most.
 _NAMED = 6
@@ -66,8 +65,9 @@ def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], 
         parts = {part for mouth in (found.mesh.parts.values() if found else ()) for part, _ in mouth}
         missed = [] if only or kind == "other" else [shape for shape in unknown(head) if shape not in parts]
         if missed:
-            report.append(f"{head.name}: not used, though they move the lips: {_listed(missed)}; --shapes names those "
-                          "to use")
+            more = f" and {len(missed) - _NAMED} more" if len(missed) > _NAMED else ""
+            report.append(f"{head.name}: not used, though they move the lips: "
+                          f"{one_line(', '.join(missed[:_NAMED]) + more)}; --shapes names those to use")
     solution = solve([head.only(order) for head, _, _ in prepared], read_sentences(laughs=_LAUGHS), prepared[0][2])
     files = prepared[0][1]  # the avatar's own names
     remarks = [f"Solved by `labial fit` for {', '.join(Path(path).name for path in paths)}."]
@@ -92,11 +92,6 @@ def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], 
         mesh = found.mesh
         found = found._replace(mesh=replace(mesh, shapes={spelled[shape]: mesh.shapes[shape] for shape in mesh.shapes}))
     return Fitted(text, rig, found, report)
-
-
-def _listed(shapes: Sequence[str]) -> str:
-    more = f" and {len(shapes) - _NAMED} more" if len(shapes) > _NAMED else ""
-    return one_line(", ".join(shapes[:_NAMED]) + more)
 
 
 def _read(path: str, points: Mapping[str, int]) -> Tuple[Head, Optional[Found]]:
@@ -138,8 +133,7 @@ _LONGEST, _REFUSED = 32, ("OUTPUTS", "OUTPUT_NAMES", "PCA9685_PRESCALE")
 
 
 def output_name(shape: str) -> str:
-    """The name of a shape in a description: without its mesh's, which stands before a dot, with underscores for
-    characters that C does not allow."""
+    """The name of a shape in a description: without its mesh's, with underscores where C does not allow a character."""
     return _spelled(shape)[:_LONGEST]
 
 
@@ -185,8 +179,7 @@ def _sources(side: str, slopes: np.ndarray) -> List[Tuple[str, float]]:
 
 
 def _mixed(sources: Sequence[Tuple[str, float]], neutral: float) -> Tuple[str, str]:
-    """The text of `from` and that of `reach`. The least coefficients are left out, and more of them where a table
-    cannot hold all."""
+    """The text of `from` and that of `reach`, without the least coefficients, nor more than a table can hold."""
     largest = max(abs(slope) for _, slope in sources)
     reach = f"{(1.0 - neutral) * 1024.0 / largest:.1f}"
     shares = [(name, f"{slope / largest:.3f}") for name, slope in sources if abs(slope) >= _LEAST * largest]

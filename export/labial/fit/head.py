@@ -29,8 +29,7 @@ POINTS: Tuple[str, ...] = (
 )
 #: Required points.
 NEEDED: Tuple[str, ...] = ("nose", "corner_left", "corner_right", "inner_upper", "inner_lower")
-#: Columns of a table of lip points in Multi-PIE's numbering, whose 48 is the corner on the viewer's left: the face's
-#: right one.
+#: Columns of a table of lip points in Multi-PIE's numbering, whose 48 is the face's right corner.
 _MULTI_PIE: Mapping[str, str] = {
     "nose": "nose_base", "chin": "chin", "corner_right": "lip_48", "corner_left": "lip_54",
     "inner_upper": "lip_62", "inner_lower": "lip_66", "outer_upper": "lip_51", "outer_lower": "lip_57",
@@ -38,8 +37,7 @@ _MULTI_PIE: Mapping[str, str] = {
     "inner_lower_right": "lip_67", "outer_upper_right": "lip_50", "outer_upper_left": "lip_52",
     "outer_lower_left": "lip_56", "outer_lower_right": "lip_58",
 }
-#: Millimetres between the nose's base and the inner upper lip of a grown-up, by which heads of unknown units are
-#: scaled: that of ICT-FaceKit's mean head.
+#: Millimetres from nose to mouth (`Head.mns`) of ICT-FaceKit's mean head, by which heads of unknown units are scaled.
 USUAL_MNS = 21.2
 
 
@@ -123,8 +121,7 @@ def read_table(path: PathLike) -> Head:
     return from_points(where, shapes, rest, moves)
 
 
-#: A side in a name: a word anywhere, or a letter that stands apart from others: ``L_smile``, ``smile.l``, ``smileL``,
-#: ``LSmile``.
+#: A side in a name: a word anywhere, or a letter apart from others: ``L_smile``, ``smile.l``, ``smileL``, ``LSmile``.
 _SIDE = re.compile(r"(?i:left|right|(?<![a-z])[lr](?![a-z]))|(?<=[a-z0-9])[LR](?![a-z])"
                    r"|(?<![A-Za-z])[LR](?=[A-Z][a-z])")
 #: Sides looked at in one name.

@@ -21,8 +21,7 @@ _OPENERS = ("jawopen", "visemeaa", "fclmtha", "aa", "mouthopen", "openmouth", "a
 #: How far an upper and a lower vertex go apart for each unit of their distance where a seam runs between them; times
 #: the mouth's whole opening divided by the face's width. In the lips' middle, and towards the corners.
 _TORN_MIDDLE, _TORN = 4.0, 15.0
-#: Slope of the profile with which the nose begins: that where ICT-FaceKit's landmark of its base lies, without bias in
-#: 16 of its heads.
+#: Slope of the profile with which the nose begins, as at the landmark of its base in 16 of ICT-FaceKit's heads.
 _NOSE = 0.5
 #: Millimetres between the inner lips at rest from which on a mouth counts as open.
 _APART = 1.0
@@ -144,8 +143,8 @@ class _Face:
 
 
 def _inner(face: _Face) -> Tuple[int, int]:
-    """The middles of the inner lips: of an upper vertex that stays and a lower one that goes, near each other on the
-    midline, the foremost pair."""
+    """The middles of the inner lips: the foremost pair on the midline of an upper vertex that stays and a lower one,
+    near it, that goes."""
     for width in (0.012, 0.03, 0.06):
         middle = face.strip(width)
         upper = np.flatnonzero(middle & (face.down < 0.3 * face.jaw))

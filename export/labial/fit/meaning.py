@@ -121,8 +121,8 @@ def meant(head: Head, frames: np.ndarray) -> np.ndarray:
 
 
 def crooked(head: Head, weights: np.ndarray, frames: np.ndarray) -> Tuple[float, float]:
-    """Most millimetres by which (T, K) weights move the mouth sideways, and by which its corners differ in height,
-    beyond what the (T, 13) frames mean."""
+    """Most millimetres by which (T, K) weights move the mouth sideways, and its corners differ in height, beyond what
+    the (T, 13) frames mean."""
     points = shown(head, weights)
     left, right = (points[f"corner_{side}"] - head.rest[f"corner_{side}"] for side in ("left", "right"))
     aside = (left + right)[:, 0] / 2.0 - (fap(frames, 53) - fap(frames, 54)) * head.mw / 2048.0

@@ -78,8 +78,7 @@ def read_motions(paths: Sequence[PathLike], timings: Optional[PathLike] = None, 
 def read_fap(path: PathLike) -> Tuple[np.ndarray, np.ndarray]:
     """Reads an MPEG-4 .fap text file: (T,) times in seconds and (T, 13) FAPs. A header ``2.1 NAME FPS FRAMES``, then
     two lines per frame: a mask of zeros and ones, one per FAP (a 69th entry, which some programs write, is ignored),
-    and the frame's number with the values of the FAPs whose mask is one. A FAP that a frame does not set keeps its
-    value, 0 to begin with."""
+    and the frame's number with the values of the FAPs whose mask is one. Other FAPs keep their values, 0 at first."""
     lines = read_lines(path)
     rows = [(line, fields_of(text)) for line, text in enumerate(lines, 1) if not is_blank(text)]
     head = rows[0][1] if rows else []
@@ -128,8 +127,7 @@ def read_bands(path: Optional[PathLike], labels: str = AUTO, source: Optional[st
 
 
 def closures(motion: Motion, bands: Sequence[Band]) -> List[Tuple[str, float]]:
-    """The label of each p, b, m and the least distance of the lips in its frames, FAP units. A frame is of the phoneme
-    that its middle falls into."""
+    """The label of each p, b, m and the least distance of the lips, FAP units, in frames whose middles fall into it."""
     distance = opening(motion.frames)
     middles = motion.times + (np.median(np.diff(motion.times)) / 2 if len(motion.times) > 1 else 0)
     found = [(band.label, distance[(band.start <= middles) & (middles < band.end)])

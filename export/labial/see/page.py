@@ -1,5 +1,4 @@
-"""``labial page``: one HTML file that plays motion, with its phonemes and its sound, drawn or on an avatar. It needs no
-network."""
+"""``labial page``: an HTML file that plays motion and sound, drawn or on an avatar. It needs no network."""
 
 from __future__ import annotations
 
@@ -31,8 +30,7 @@ from labial.see.player import player, script_data
 def page(motion: Motion, bands: Sequence[Band], audio: Optional[PathLike] = None, title: Optional[str] = None) -> str:
     """The page as text; `title` is the motion's name unless given. `audio` is a sound file that browsers play (WAV,
     MP3, Ogg, FLAC, AAC, M4A, WebM), of at most `limits.PAGE` bytes, whose time 0 is that of the motion's file. Raises
-    DataError, which names it, when it is none, and LabialError for a motion whose frames are too uneven in time to be
-    played."""
+    DataError, which names it, when it is none, and LabialError for frames that are too uneven in time."""
     fps, frames = _even(motion)
     start = float(motion.times[0])
     return player(title or motion.name, fps, np.rint(frames).astype(int).tolist(),
@@ -80,8 +78,7 @@ _IMPORTS = {"./three.core.js": "labial-core", "../utils/BufferGeometryUtils.js":
 
 
 def find_three(given: Optional[PathLike]) -> Path:
-    """The folder of the npm package three: the given one, or node_modules/three in this folder or above. Raises a
-    LabialError that says how to install it."""
+    """The folder of the npm package three: the given one, or node_modules/three here or above. Raises LabialError."""
     places = [Path(given)] if given is not None else [folder / "node_modules" / "three"
                                                       for folder in (Path.cwd(), *Path.cwd().parents)]
     for place in places:

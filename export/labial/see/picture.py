@@ -34,8 +34,7 @@ _SAID: Tuple[Sound, ...] = (
 
 def said(sounds: Sequence[Sound] = _SAID,
          speak: Speak = lambda phonemes: np.asarray(render(phonemes))) -> Tuple[List[str], np.ndarray]:
-    """Captions, and (N, 13) FAPs of the middle of each phoneme; of the frame in which the lips are nearest in one that
-    closes them."""
+    """Captions, and (N, 13) FAPs of the middle of each phoneme; of one that shuts the lips, where they are nearest."""
     frames = []
     for _, word, place in sounds:
         if not word:

@@ -33,8 +33,7 @@ _SOUNDS = (
 def player(title: str, fps: float, frames: Sequence[Sequence[int]], phonemes: Sequence[Dict[str, Any]] = (),
            start: float = 0.0, audio: Optional[PathLike] = None) -> str:
     """The page as text. `frames` are (T, 13) FAP units, the first one at `start` seconds; `phonemes` have `label`,
-    `start_frame`, `frames` and `kind`, which is "speech", "laughter" or "silence"; `audio` is a file, as for
-    :func:`sound`."""
+    `start_frame`, `frames` and `kind`, "speech", "laughter" or "silence"; `audio` is a file, as for :func:`sound`."""
     data: Dict[str, Any] = {"title": title, "fps": fps, "start": round(start, 6), "channels": list(FAP_COLUMNS),
                             "phonemes": list(phonemes), "frames": [list(frame) for frame in frames]}
     before, between, after = re.split(f"{DATA_PLACE}|{MOUTH_PLACE}", PLAYER.read_text(encoding="utf-8"))

@@ -72,10 +72,9 @@ def shade(axes: Axes, bands: Iterable[Band]) -> None:
 
 
 def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
-    """Writes the bands' labels above the axes and returns them; labels of successive short bands are stepped upwards to
-    stay apart, and a label without room is omitted. `upright` suits names that are wider than their bands, such as
-    those of laughter. The axes must have their limits and their place in the figure; what changes their width
-    afterwards changes it little."""
+    """Writes the bands' labels above the axes, which must have their limits and about their width, and returns them.
+    Labels of successive short bands are stepped upwards to stay apart, and a label without room is omitted. `upright`
+    suits names that are wider than their bands, such as those of laughter."""
     texts: List[Text] = []
     scale = 72.0 / axes.figure.dpi
     points = axes.get_window_extent().width * scale
@@ -109,8 +108,7 @@ def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:
 
 
 def write(figure: Figure, path: PathLike, dpi: int = 110) -> None:
-    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it. Figures
-    are drawn and written within :func:`style`."""
+    """Writes the figure, in the format that the suffix tells and with the same bytes each time, and closes it."""
     unstamped = {".png": {"Software": None}, ".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None}}
     suffix = Path(path).suffix.lower()
     with writing(path) as file:
@@ -173,8 +171,7 @@ def panels(channels: str) -> List[_Panel]:
 
 
 def plot(motions: Sequence[Motion], bands: Sequence[Band], path: PathLike, channels: str = DEFAULT) -> None:
-    """Writes the plot of one motion or more to `path` (.png, .svg or .pdf). Raises LabialError for another suffix and
-    for channels that do not exist."""
+    """Writes the plot of one motion or more, .png, .svg or .pdf. Raises LabialError for others and unknown channels."""
     if Path(path).suffix.lower() not in _SUFFIXES:
         raise LabialError(f"{os.fspath(path)}: the name of a plot ends in {', '.join(_SUFFIXES)}")
     rows = panels(channels)
@@ -216,8 +213,7 @@ _SHARES = np.linspace(0.0, 1.25, 51)
 
 
 def draw_rig(rig: Rig, path: Union[str, Path]) -> None:
-    """Writes how each output moves from rest to a few poses, which shows errors in a description, as SVG; the same rig
-    gives the same bytes."""
+    """Writes how each output moves from rest to a few poses, as SVG; the same rig gives the same bytes."""
     limits.refuse(rig.path, "it has", len(rig.outputs), limits.DRAWN, "outputs (--no-figure leaves the drawing out)")
     table = convert(rig)
     columns = min(len(table), 3)

@@ -162,8 +162,8 @@ class Sound:
         return any(a <= start and b >= end for a, b in self.silences)
 
     def cut(self, start: float, longest: float) -> float:
-        """The end of a piece from `start`: in the last silence of its latter half, or in its quietest moment, or at the
-        sound's end when that is near."""
+        """The end of a piece from `start`: the sound's if near; else in its latter half's last silence, or quietest
+        moment."""
         if self.length - start <= longest:
             return self.length
         middles = [(a + b) / 2 for a, b in self.silences if start + longest / 2 < (a + b) / 2 <= start + longest]
@@ -255,8 +255,7 @@ def _between(phrases: Sequence[Sequence[str]], begin: int, end: int) -> List[Seq
 
 
 def _heard_of(samples: np.ndarray, words: Sequence[str], recogniser: Recogniser) -> Tuple[int, Optional[Found]]:
-    """The number of the first `words` in the last piece of a sound, if not all of them fit, and their phonemes; all and
-    None if none fit."""
+    """How many of the first `words` the last piece of a sound has, and their phonemes; all and None if none fit."""
     count = sum(not word.startswith(("<", "[")) for word, _, _ in recogniser.follow_part(samples, words))
     found = recogniser.phonemes(samples, words[:count]) if count else None
     return (count, found) if found is not None else (len(words), None)

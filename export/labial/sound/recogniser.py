@@ -35,8 +35,7 @@ _NARROW = {"beam": 1e-64, "wbeam": 1e-48, "pbeam": 1e-64, "bestpath": False}
 _PHONE_LOOP = {"lw": 2.0, "beam": 1e-20, "pbeam": 1e-20}
 #: Words of one phoneme, which stand for what the text lacks, are called by this and the phoneme.
 _PHONE = "_"
-#: Probabilities of such a word between two phrases, and of a phrase that is not said. They are weighed by the decoder's
-#: language weight, 6.5.
+#: Probabilities of such a word between two phrases, and of a phrase left out; the decoder weighs them by 6.5.
 _BETWEEN, _LEFT_OUT = 1e-5, 1e-6
 #: A second pass on 30 ms of sound at least: a phoneme has three states.
 _SHORTEST = int(0.1 * RATE)
@@ -51,8 +50,8 @@ class Found(NamedTuple):
 
 
 class Recogniser:
-    """Four decoders, each created on first use: one follows words, one follows phrases with any phonemes between them,
-    one finds words, one finds phonemes alone."""
+    """Four decoders, each made on first use: for words, for phrases with any phonemes between them, to find words, and
+    to find phonemes alone."""
 
     def __init__(self) -> None:
         self._loose: Optional[Decoder] = None

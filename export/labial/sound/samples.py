@@ -54,19 +54,15 @@ def read_sound(path: PathLike) -> np.ndarray:
         named = Path(path).suffix.lower() in VIDEOS
         if named or importlib.util.find_spec("av") is not None:
             try:
-                return _of_video(path)
+                with needs(f"{path}: the sound of a video", "record"):
+                    from labial.sound.video import sound as of_video
+                return _checked(path, of_video(path, RATE))
             except DataError:
                 if named:
                     raise
         problem = getattr(error, "error_string", str(error))
         raise DataError(path, None, f"not a sound that can be read: {' '.join(problem.split())}") from None
     return _checked(path, np.concatenate(blocks))
-
-
-def _of_video(path: PathLike) -> np.ndarray:
-    with needs(f"{path}: the sound of a video", "record"):
-        from labial.sound.video import sound
-    return _checked(path, sound(path, RATE))
 
 
 def _checked(path: PathLike, samples: np.ndarray) -> np.ndarray:
@@ -89,8 +85,8 @@ def prepared(samples: np.ndarray) -> np.ndarray:
 
 
 def silences(samples: np.ndarray, rate: float = RATE) -> List[Tuple[float, float]]:
-    """Begin and end, in seconds, of every silence of `SHORTEST_SILENCE` or more: a run of 10 ms steps that are `DEPTH`
-    dB below the level of the loudest twentieth."""
+    """Begin and end, in seconds, of every run of 10 ms steps, `SHORTEST_SILENCE` or more, `DEPTH` dB below the level of
+    the loudest twentieth."""
     hop = int(rate * _HOP)
     frames = samples[: len(samples) // hop * hop].reshape(-1, hop)
     if not len(frames):

@@ -167,9 +167,8 @@ def even(frames: int, states: int) -> np.ndarray:
 
 
 def deal(frames: int, mean: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(frames,) int64: a segment's frames distributed to states as mean + rho * variance, (S,) frames each. rho makes
-    the states fill the segment; a negative number of frames becomes 0. A segment with fewer frames than states is
-    divided evenly, as in training."""
+    """(frames,) int64: a segment's frames distributed to states as mean + rho * variance, (S,) frames each, or 0 where
+    that is negative. rho makes them fill the segment; one with fewer frames than states is divided evenly."""
     if frames < len(mean):
         return even(frames, len(mean))
     share = np.maximum(mean + (frames - mean.sum()) / variance.sum() * variance, 0.0)
@@ -192,9 +191,8 @@ def log_likelihoods(values: np.ndarray, row: np.ndarray, mean: np.ndarray, varia
 
 def align(values: np.ndarray, row: np.ndarray, mean: np.ndarray, variance: np.ndarray,
           length: np.ndarray) -> np.ndarray:
-    """(N,) int64: the likeliest states of the frames of segments of `length` frames each, which sum to N. A segment
-    begins in the first state, ends in the last and skips none; one with fewer frames than states is divided evenly.
-    Ties stay in the state."""
+    """(N,) int64: the likeliest states of the frames of segments of `length` frames each, which sum to N. A segment has
+    all states in order; one with fewer frames than states is divided evenly. Ties stay in the state."""
     states = mean.shape[1]
     score = log_likelihoods(values, row, mean, variance)
     start = np.cumsum(length) - length

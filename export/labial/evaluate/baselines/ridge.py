@@ -1,5 +1,4 @@
-"""Baselines that regress motion on features of the timeline: the mean shape, linear regression, and ridge regression
-on the labels in a window around each frame."""
+"""Baselines that regress motion on features of the timeline, such as the labels in a window around each frame."""
 
 from __future__ import annotations
 

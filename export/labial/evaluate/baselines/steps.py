@@ -25,8 +25,7 @@ COMPONENTS = 5
 
 @dataclass(frozen=True)
 class Steps:
-    """Selected shapes: the best component without context, as in the paper, or the mean over components with
-    context."""
+    """Selected shapes: the best component, as in the paper, or, `soft`, the mean over components with context."""
 
     tables: ShapeTables
     viseme_class: np.ndarray  #: (P,)
