@@ -101,9 +101,15 @@ def run_export(options: argparse.Namespace) -> None:
 
     check_name(options.name)
     check_folder(options.output)
+    plain = not options.blob and options.amplitude == 1.0 and options.predecessors == PREDECESSORS
     if is_hearing(options.model):
+        if not plain:
+            raise LabialError(f"{options.model}: --blob, --amplitude and --predecessors are not for a model of hearing")
         return _export_hearing(options)
     if is_tables(options.model):
+        if not plain:
+            raise LabialError(f"{options.model}: tables of words; --blob, --amplitude and --predecessors are for "
+                              "models")
         return _export_words(options)
     model, tables = exported(options, options.name)
     measured = loss.measure(model, tables, drawn_streams(model))
@@ -120,8 +126,6 @@ def _export_hearing(options: argparse.Namespace) -> None:
     from labial.hearing.network import SMOOTHING
     from labial.hearing.quantise import quantise
 
-    if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
-        raise LabialError(f"{options.model}: --blob, --amplitude and --predecessors are not for a model of hearing")
     tables = quantise(load(options.model), options.name)
     for path in emit.write(tables, options.output):
         print(path)
@@ -134,8 +138,6 @@ def _export_words(options: argparse.Namespace) -> None:
     from labial.words import packing
     from labial.words.tables import load
 
-    if options.blob or options.amplitude != 1.0 or options.predecessors != PREDECESSORS:
-        raise LabialError(f"{options.model}: tables of words; --blob, --amplitude and --predecessors are for models")
     packed = packing.pack(load(options.model))
     for path in packing.write(packed, options.name, options.output):
         print(path)

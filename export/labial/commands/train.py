@@ -77,8 +77,9 @@ def run_train(options: argparse.Namespace) -> None:
     if options.adapt is not None:
         return _adapt(options)
     own = _labials_own(options)
-    check_options(kind=options.kind, method=options.method, fps=options.fps, codebook=options.codebook,
-                  components=options.components, jobs=options.jobs, engine=options.engine, **own)
+    own.update((name, getattr(options, name)) for name in (
+        "kind", "method", "fps", "codebook", "components", "jobs", "engine"))
+    check_options(**own)
     corpora = read_corpora(options.corpus, options.kind,
                            even_sides=options.method == "labial" and not options.asymmetric)
     episodes = [episode for corpus in corpora for episode in corpus]
@@ -86,9 +87,7 @@ def run_train(options: argparse.Namespace) -> None:
     if options.kind == "speech" and 0.0 < seconds < LEAST:
         raise LabialError(f"{seconds:.1f} s of motion are too little to train on: {LEAST} s are the least, and a voice "
                           "needs minutes; --adapt gives a trained model the motion of one talker from half a minute")
-    model = train(episodes, kind=options.kind, method=options.method, fps=options.fps,
-                  codebook=options.codebook, components=options.components, seed=options.seed, jobs=options.jobs,
-                  engine=options.engine, progress=shows_progress(options), attribution=options.attribution,
+    model = train(episodes, seed=options.seed, progress=shows_progress(options), attribution=options.attribution,
                   normalise=options.normalise, symmetric=not options.asymmetric, **own)
     save(model, options.output)
     if options.kind == "speech" and seconds < FEW:

@@ -119,9 +119,6 @@ class Row(NamedTuple):
     tenth: float  #: correlation of the opening that nine clips in ten exceed
 
 
-# ---- Sounds
-
-
 def of_folder(folder: PathLike, cache: PathLike, jobs: int, most: int) -> Sounds:
     """The first clips of a folder, `most` of them, spread evenly; 0: all. Raises DataError as :func:`clips.read`."""
     from labial.sound.samples import read_sound
@@ -143,9 +140,6 @@ def of_voice(voice: str, sentences: Sequence[str]) -> Sounds:
             sound = distort.resampled(sound, spoken.rate / RATE)
         found.append((sound, targets.durations(spoken.segments)))
     return Sounds(voice, found)
-
-
-# ---- Conditions
 
 
 def _noisy(sound: np.ndarray, noise: np.ndarray, ratio: float) -> np.ndarray:
@@ -178,20 +172,13 @@ CONDITIONS: Dict[str, Callable[[np.ndarray, np.random.Generator], np.ndarray]] =
 }
 
 
-# ---- Methods
-
-
-def methods(model: HearingModel, in_integers: bool = True) -> Dict[str, Method]:
+def methods(model: HearingModel) -> Dict[str, Method]:
     """The network in floating point and in the library's integers, and what follows loudness. The integers are
     as a stream delivers them, at rest before the first voice and in silence."""
-    found: Dict[str, Method] = {"network": lambda sound: hear(model, sound).faps}
-    if in_integers:
-        tables = quantise(model, "hear")
-        found["integers"] = lambda sound: delivered(tables, sound, exact=True).faps
-    return {**found, "loudness": loudness, "loudness and crossings": loudness_and_crossings}
-
-
-# ---- Figures
+    tables = quantise(model, "hear")
+    return {"network": lambda sound: hear(model, sound).faps,
+            "integers": lambda sound: delivered(tables, sound, exact=True).faps,
+            "loudness": loudness, "loudness and crossings": loudness_and_crossings}
 
 
 def evaluated(sets: Sequence[Sounds], judged: Dict[str, Method], conditions: Sequence[str]) -> Iterator[Row]:

@@ -257,8 +257,6 @@ def joins(begin: Sequence[int], fade: Sequence[int], frames: int) -> np.ndarray:
     return touched
 
 
-# ---- Pulses of laughter ----------------------------------------------------------------------------------------------
-
 #: A pulse's peak is searched in its phoneme and this many seconds to both sides.
 REACH = 0.04
 #: A pulse is visible if it rises further than this percentile of the original's pulses in the training part.

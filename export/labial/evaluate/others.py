@@ -66,9 +66,6 @@ def method(name: str, npm: Optional[PathLike]) -> Callable[[np.ndarray], np.ndar
     return heard
 
 
-# ---- The browser
-
-
 def in_browser(sound: np.ndarray) -> np.ndarray:
     """(M,) float32 at `BROWSER_RATE`, full scale 1, of a sound at 16 kHz."""
     return soxr.resample(np.asarray(sound, np.float32) / 32768, RATE, BROWSER_RATE).astype("<f4")
@@ -99,9 +96,6 @@ def run(node: str, package: str, modules: Path, given: bytes) -> np.ndarray:
     return np.frombuffer(voices.run(package, command, given), "<f4").reshape(-1, ways, len(VISEMES))
 
 
-# ---- Weights to frames
-
-
 @cache
 def poses() -> np.ndarray:
     """(visemes, 13) FAP units: how each viseme is shown; see the top."""
@@ -121,9 +115,6 @@ def shown(weights: np.ndarray, count: int) -> np.ndarray:
     at = (np.arange(count) + 0.5) * FRAME_MS / 1000
     rows = np.arange(len(weights)) / PER_SECOND
     return np.stack([np.interp(at, rows, column) for column in weights.T], axis=1) @ poses()
-
-
-# ---- The recogniser
 
 
 def listener() -> Callable[[np.ndarray], np.ndarray]:

@@ -84,9 +84,6 @@ class Row(NamedTuple):
 Method = Callable[[Clip], np.ndarray]
 
 
-# ---- Clips
-
-
 def group(folders: Sequence[PathLike]) -> Group:
     """The clips of several corpora, in which talkers of the same name are one person. Raises DataError as
     :func:`labial.corpus.corpora.read_corpus`, for energies that are not what this module describes, and for a folder
@@ -159,9 +156,6 @@ def _padded(clip: Clip) -> np.ndarray:
     return np.pad(clip.energies, ((0, missing), (0, 0)), constant_values=FLOOR)
 
 
-# ---- Methods
-
-
 def methods(model: HearingModel) -> Dict[str, Method]:
     """The network in floating point and in the library's integers, what follows loudness, Labial's own frames of the
     phonemes, whose times are known, and these with the sound's share (:func:`labial.with_sound`)."""
@@ -182,9 +176,6 @@ def methods(model: HearingModel) -> Dict[str, Method]:
             "integers": integers, "loudness": loudness,
             "phonemes": phonemes,
             "phonemes and sound": lambda clip: np.array(with_sound(phonemes(clip).tolist(), integers(clip).tolist()))}
-
-
-# ---- Figures
 
 
 def channels(frames: np.ndarray) -> np.ndarray:

@@ -56,8 +56,6 @@ class Gltf:
         size = sum(self._count(number) * self._width(number) for number in uses) * _DECODED
         limits.refuse(path, "its accessors unpack to", size, limits.AVATAR_UNPACKED)
 
-    # ---- Nodes
-
     def _tree(self) -> Dict[int, int]:
         """The parent of each node that has one. Raises ValueError unless the nodes are trees."""
         parents: Dict[int, int] = {}
@@ -88,8 +86,6 @@ class Gltf:
                 raise ValueError(f"the place of node {number} is not finite")
             self._transforms[number] = own
         return self._transforms[number]
-
-    # ---- Accessors
 
     def _count(self, number: int) -> int:
         count = self._accessors[number]["count"]

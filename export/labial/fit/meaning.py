@@ -72,8 +72,6 @@ def rows(head: Head, frames: np.ndarray) -> List[Row]:
     return found
 
 
-# ---- Judges weights on a head in millimetres -------------------------------------------------------------------------
-
 #: Gap of the inner lips, mm, below which they count as closed, and below which they pass through each other.
 CLOSED, THROUGH = 1.0, -2.5
 

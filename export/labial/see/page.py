@@ -59,8 +59,6 @@ def _phonemes(bands: Sequence[Band], start: float, fps: float, count: int) -> Li
     return phonemes
 
 
-# ---- labial page --head ----------------------------------------------------------------------------------------------
-
 #: Acceptable range of the opening shown by the opening meant, and the millimetres of opening needed to judge it.
 _RIGHT, _LEAST = (0.8, 1.25), 2.0
 HEAD_PLAYER = Path(__file__).with_name("head.html")

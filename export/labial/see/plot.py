@@ -16,7 +16,6 @@ from matplotlib import pyplot as pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from matplotlib.text import Text
 
 from labial.errors import LabialError, PathLike
 from labial.files import limits
@@ -71,12 +70,11 @@ def shade(axes: Axes, bands: Iterable[Band]) -> None:
             axes.axvline(edge, color="0.82", linewidth=0.5, zorder=0.5)
 
 
-def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = False) -> List[Text]:
-    """Writes the bands' labels above the axes, which must have their limits and about their width, and returns them.
-    Labels of successive short bands are stepped upwards to stay apart, and a label without room is omitted. `upright`
-    suits names that are wider than their bands, such as those of laughter."""
-    texts: List[Text] = []
-    scale = 72.0 / axes.figure.dpi
+def label(axes: Axes, bands: Sequence[Band], upright: bool = False) -> None:
+    """Writes the bands' labels above the axes, which must have their limits and about their width. Labels of successive
+    short bands are stepped upwards to stay apart, and a label without room is omitted. `upright` suits names that are
+    wider than their bands, such as those of laughter."""
+    size, scale = 7.0, 72.0 / axes.figure.dpi
     points = axes.get_window_extent().width * scale
     left, right = axes.get_xlim()
     taken = [-1e9] * (1 if upright else 3)  # where the last label of each row ends, points
@@ -96,8 +94,6 @@ def label(axes: Axes, bands: Sequence[Band], size: float = 7.0, upright: bool = 
             continue
         taken[row] = place + half
         text.set_position((0, 3 + row * size * 1.15))
-        texts.append(text)
-    return texts
 
 
 def legend_patches(bands: Iterable[Band]) -> Sequence[Patch]:

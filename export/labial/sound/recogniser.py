@@ -211,12 +211,12 @@ _SHORTEST_PAUSE = 0.05
 _STOPS = ("P", "B", "T", "D", "K", "G", "CH", "JH")
 
 
-def with_silences(segments: Sequence[Segment], silences: Sequence[Tuple[float, float]], length: float,
-                  silence: str = "SIL") -> List[Segment]:
+def with_silences(segments: Sequence[Segment], silences: Sequence[Tuple[float, float]],
+                  length: float) -> List[Segment]:
     """`segments` of ARPABET phonemes brought to the sound's own silences (begin and end, seconds): they end where a
     silence begins and begin where it ends, a stop `LONGEST_CLOSURE` before. `length` is the sound's, in seconds.
     Silence in the segments remains only where the sound is silent. The result has no gaps."""
-    sounding = [segment for segment in segments if segment.label != silence]
+    sounding = [segment for segment in segments if segment.label != "SIL"]
     times = [[segment.start, segment.end] for segment in sounding]
     for begin, end in silences:
         middle = (begin + end) / 2
@@ -231,13 +231,8 @@ def with_silences(segments: Sequence[Segment], silences: Sequence[Tuple[float, f
             time[0], time[1] = min(time[0], begin), min(time[1], begin)
         for time in times[after:]:
             time[0], time[1] = max(time[0], times[after][0]), max(time[1], times[after][0])
-    return _closed(sounding, times, silences, length, silence)
-
-
-def _closed(sounding: Sequence[Segment], times: Sequence[Sequence[float]], silences: Sequence[Tuple[float, float]],
-            length: float, silence: str) -> List[Segment]:
-    """The segments at `times`, without gaps: a gap is silence where the sound is silent for long enough; else the stop
-    behind it begins there, or the phoneme before it goes on."""
+    # Without gaps: a gap is silence where the sound is silent for long enough; else the stop behind it begins there, or
+    # the phoneme before it goes on.
     result: List[Segment] = []
     moment = 0.0
     for segment, (start, end) in zip(sounding, times):
@@ -246,7 +241,7 @@ def _closed(sounding: Sequence[Segment], times: Sequence[Sequence[float]], silen
         if start > moment:
             silent = any(a < start and b > moment for a, b in silences)
             if not result or (silent and start - moment >= _SHORTEST_PAUSE):
-                result.append(Segment(moment, start, silence))
+                result.append(Segment(moment, start, "SIL"))
             elif segment.label in _STOPS:
                 start = moment
             else:
@@ -256,7 +251,7 @@ def _closed(sounding: Sequence[Segment], times: Sequence[Sequence[float]], silen
             result.append(Segment(start, end, segment.label, word=segment.word))
             moment = end
     if length > moment:
-        result.append(Segment(moment, length, silence))
+        result.append(Segment(moment, length, "SIL"))
     return result
 
 

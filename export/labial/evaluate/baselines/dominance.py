@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Callable, List, Sequence, Tuple
+from typing import Callable, Sequence, Tuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -102,13 +102,11 @@ def objective(around: Near, wanted: np.ndarray, centre: np.ndarray, viseme_class
         residual = found - wanted
         pull = residual[:, None] * share
         lift = pull * (target - found[:, None])  # by log D
-        gradient = np.concatenate(
-            [
-                np.bincount(flat_phoneme, pull.ravel(), phonemes) + prior * (parameters.target - centre),
-                np.bincount(flat_phoneme, lift.ravel(), phonemes) + prior * parameters.strength,
-                np.bincount(flat_rate, (-lift * decay).ravel(), rates) + prior * parameters.rate.ravel(),
-            ]
-        )
+        gradient = np.concatenate([
+            np.bincount(flat_phoneme, pull.ravel(), phonemes) + prior * (parameters.target - centre),
+            np.bincount(flat_phoneme, lift.ravel(), phonemes) + prior * parameters.strength,
+            np.bincount(flat_rate, (-lift * decay).ravel(), rates) + prior * parameters.rate.ravel(),
+        ])
         away = ((parameters.target - centre) ** 2).sum() + (x[phonemes:] ** 2).sum()
         return 0.5 * float((residual**2).sum() + prior * away) / len(wanted), gradient / len(wanted)
 
@@ -139,11 +137,8 @@ class Dominance:
         around = near(timeline, self.fps)
         power = np.abs(around.distance) ** self.exponent
         rate_at = _rate_index(around, self.viseme_class)
-        motion: List[np.ndarray] = []
-        for parameters in self.channels:
-            share, _ = _shares(around, power, parameters, rate_at)
-            motion.append((share * parameters.target[around.phoneme]).sum(axis=1))
-        return np.stack(motion, axis=1)
+        return np.stack([(_shares(around, power, channel, rate_at)[0] * channel.target[around.phoneme]).sum(axis=1)
+                         for channel in self.channels], axis=1)
 
 
 def _phoneme_means(utterances: Sequence[Utterance], phonemes: int) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -36,12 +36,8 @@ class Rows:
 Design = Callable[[Timeline], Rows]
 
 
-@dataclass(frozen=True)
-class Normal:
-    """Normal equations of K features: `gram` (K, K) and `cross` (K, 13)."""
-
-    gram: np.ndarray
-    cross: np.ndarray
+#: Normal equations of K features: (K, K) and (K, 13).
+Normal = Tuple[np.ndarray, np.ndarray]
 
 
 def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, silence: int) -> Normal:
@@ -54,12 +50,13 @@ def normal(design: Design, utterances: Sequence[Utterance], base: np.ndarray, si
     heavy = dense * weight[:, None]
     mixed = weighted @ dense
     gram = np.block([[(weighted @ sparse).toarray(), mixed], [mixed.T, heavy.T @ dense]])
-    return Normal(gram, np.concatenate([weighted @ motion, heavy.T @ motion]))
+    return gram, np.concatenate([weighted @ motion, heavy.T @ motion])
 
 
 def solve(equations: Normal, penalty: np.ndarray) -> np.ndarray:
     """(K, 13) weights of least squared error plus penalty (K,) times their squares."""
-    return cho_solve(cho_factor(equations.gram + np.diag(penalty)), equations.cross)
+    gram, cross = equations
+    return cho_solve(cho_factor(gram + np.diag(penalty)), cross)
 
 
 def _mean(training: Training) -> np.ndarray:
@@ -101,8 +98,6 @@ def fit_mean(training: Training) -> Predictor:
     shape = _mean(training)
     return lambda timeline: np.tile(shape, (timeline.frames, 1))
 
-
-# ---- The phoneme, its neighbours and its duration --------------------------------------------------------------------
 
 #: Penalties that are tried, frames.
 REGRESSION_PENALTIES = (0.1, 1.0, 10.0, 100.0)
@@ -179,9 +174,9 @@ def shifted(stream: np.ndarray, lag: np.ndarray) -> np.ndarray:
     return stream[np.clip(np.arange(len(stream))[:, None] + lag[None, :], 0, len(stream) - 1)].reshape(len(stream), -1)
 
 
-def _design_of_window(training: Training, of_class: bool, stream: Optional[steps.Steps]) -> Design:
+def _design_of_window(training: Training, stream: Optional[steps.Steps]) -> Design:
     viseme_class = np.array(training.phone_set.viseme_class, dtype=np.int64)
-    label_of = viseme_class if of_class else np.arange(len(viseme_class))
+    label_of = np.arange(len(viseme_class)) if stream is None else viseme_class
     lag = window(training.fps)
     wide = window(training.fps, max(1, round(SPACING * training.fps)))
     count = int(label_of.max()) + 1
@@ -198,25 +193,16 @@ def _design_of_window(training: Training, of_class: bool, stream: Optional[steps
     return rows
 
 
-def _penalties(training: Training, of_class: bool, with_stream: bool) -> List[np.ndarray]:
-    phone_set = training.phone_set
-    labels_wide = len(window(training.fps)) * (len(phone_set.classes) if of_class else len(phone_set.phonemes))
-    stream_wide = len(window(training.fps, max(1, round(SPACING * training.fps)))) * CHANNELS if with_stream else 0
-    tried = itertools.product(LABEL_PENALTIES, STREAM_PENALTIES if with_stream else (1.0,))
-    return [np.repeat([label, stream], [labels_wide, stream_wide]) for label, stream in tried]
-
-
-def _fit_window(training: Training, of_class: bool, with_stream: bool) -> Predictor:
-    return fit_ridge(training, lambda part: _design_of_window(
-        part, of_class, steps.fit(part, context=True) if with_stream else None),
-        _penalties(training, of_class, with_stream))
-
-
 def fit_phonemes(training: Training) -> Predictor:
     """Phoneme labels within REACH."""
-    return _fit_window(training, of_class=False, with_stream=False)
+    wide = len(window(training.fps)) * len(training.phone_set.phonemes)
+    return fit_ridge(training, lambda part: _design_of_window(part, None),
+                     [np.full(wide, penalty) for penalty in LABEL_PENALTIES])
 
 
 def fit_classes(training: Training) -> Predictor:
     """Viseme-class labels within REACH, and the context-aware step stream of all channels."""
-    return _fit_window(training, of_class=True, with_stream=True)
+    wide = (len(window(training.fps)) * len(training.phone_set.classes),
+            len(window(training.fps, max(1, round(SPACING * training.fps)))) * CHANNELS)
+    return fit_ridge(training, lambda part: _design_of_window(part, steps.fit(part, context=True)),
+                     [np.repeat(penalties, wide) for penalties in itertools.product(LABEL_PENALTIES, STREAM_PENALTIES)])

@@ -70,8 +70,6 @@ def fit(training: Training, context: bool = False) -> Steps:
     return training.derived(("steps", context), lambda: _fit(training, context))
 
 
-# ---- Under a Gaussian ------------------------------------------------------------------------------------------------
-
 #: Standard deviations that are tried, seconds.
 WIDTHS = tuple(round(0.005 * n, 3) for n in range(17))
 
