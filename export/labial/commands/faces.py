@@ -30,11 +30,8 @@ def run_rig(options: argparse.Namespace) -> None:
     name = options.name or Path(options.description).stem
     check_name(name, "rig")
     rig = read(options.description, name)
-    if options.calibrate:
-        print(calibrate.write(rig, options.output))
-        return
-    if options.json:
-        print(table.write_json(rig, options.output))
+    if options.calibrate or options.json:
+        print((calibrate.write if options.calibrate else table.write_json)(rig, options.output))
         return
     with folder(options.output) as made:
         paths = table.write(rig, made)

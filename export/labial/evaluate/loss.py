@@ -118,12 +118,10 @@ def workspace_bytes(stride: int, channels: int) -> int:
 
 def memory(exported: ExportedModel) -> str:
     """Flash by group of tables, and RAM."""
-    tables = table_bytes(exported)
-    lines = [f"{'flash, ' + name:<32}{size:>8} bytes" for name, size in tables.items()]
-    lines.append(f"{'flash, model':<32}{sum(tables.values()):>8} bytes")
-    lines.append(f"{'flash, names, if used':<32}{emit.names_bytes(exported):>8} bytes")
-    lines.append(f"{'RAM, workspace':<32}{workspace_bytes(exported.search_stride, len(exported.centre)):>8} bytes")
-    return "\n".join(lines)
+    tables = {f"flash, {name}": size for name, size in table_bytes(exported).items()}
+    rows = {**tables, "flash, model": sum(tables.values()), "flash, names, if used": emit.names_bytes(exported),
+            "RAM, workspace": workspace_bytes(exported.search_stride, len(exported.centre))}
+    return "\n".join(f"{name:<32}{size:>8} bytes" for name, size in rows.items())
 
 
 def loosened(model: Model, exported: ExportedModel) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Dict, Iterable, List, Optional, Sequence, Tuple
@@ -76,15 +77,10 @@ class Utterance:
 
     def longest_word(self, silence: int, words: Optional[Iterable[str]] = None) -> Optional[Tuple[int, int]]:
         """First and last segment of the word with the most phonemes, the first of equals, among `words` if given."""
-        wanted = set(self.words if words is None else words) - {None}
-        runs: List[List[int]] = []
-        for index, word in enumerate(self.words):
-            if word not in wanted or self.timeline.phoneme[index] == silence:
-                continue
-            if runs and runs[-1][-1] == index - 1 and self.words[index - 1] == word:
-                runs[-1].append(index)
-            else:
-                runs.append([index])
+        wanted = set(self.words if words is None else words)
+        said = [word if word in wanted and phoneme != silence else None
+                for word, phoneme in zip(self.words, self.timeline.phoneme)]
+        runs = [list(run) for word, run in itertools.groupby(range(len(said)), said.__getitem__) if word is not None]
         longest = max(runs, key=len, default=None)
         return (longest[0], longest[-1]) if longest else None
 

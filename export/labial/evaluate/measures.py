@@ -295,11 +295,7 @@ def longest_train(item: Utterance, phone_set: PhoneSet) -> Optional[Tuple[int, i
     """First and last segment of the train with the most pulses, the first of equals, with the phonemes beside it."""
     given = item.timeline
     begin = np.cumsum(given.milliseconds) - given.milliseconds
-    trains: List[List[int]] = []
-    for segment in np.flatnonzero(np.array(phone_set.boundary)[given.phoneme]):
-        if trains and begin[segment] - begin[trains[-1][-1]] <= TRAIN_GAP:
-            trains[-1].append(int(segment))
-        else:
-            trains.append([int(segment)])
-    longest = max(trains, key=len, default=None)
+    pulses = np.flatnonzero(np.array(phone_set.boundary)[given.phoneme])
+    trains = np.split(pulses, np.flatnonzero(np.diff(begin[pulses]) > TRAIN_GAP) + 1)
+    longest = max(map(np.ndarray.tolist, trains), key=len)
     return (max(longest[0] - 1, 0), min(longest[-1] + 1, len(given.phoneme) - 1)) if longest else None

@@ -26,6 +26,7 @@ methods with residual with the human without residual.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections import Counter
 from dataclasses import dataclass
@@ -61,16 +62,11 @@ class Token(NamedTuple):
 def spoken(item: Utterance, silence: int) -> List[Tuple[str, int, int]]:
     """The words of an utterance in order: word, first frame and the frame after the last, of each run of segments with
     its name; there may be no frame. "with" and "with(2)", which aligners use for pronunciations, are one word."""
-    given, found, last = item.timeline, [], None
-    for index, word in enumerate(item.words):
-        word = None if word is None or given.phoneme[index] == silence else _VARIANT.sub("", word)
-        end = int(given.start[index] + given.length[index])
-        if word is not None and word == last:
-            found[-1] = (word, found[-1][1], end)
-        elif word is not None:
-            found.append((word, int(given.start[index]), end))
-        last = word
-    return found
+    start, end = item.timeline.start, item.timeline.start + item.timeline.length
+    said = [None if word is None or phoneme == silence else _VARIANT.sub("", word)
+            for word, phoneme in zip(item.words, item.timeline.phoneme)]
+    runs = ((word, list(run)) for word, run in itertools.groupby(range(len(said)), said.__getitem__))
+    return [(word, int(start[run[0]]), int(end[run[-1]])) for word, run in runs if word is not None]
 
 
 def word_classes(sentences: Sequence[Sequence[str]]) -> List[Tuple[str, ...]]:

@@ -175,7 +175,5 @@ def _mouths(extensions: Dict[str, Any], mesh: int, nodes: Sequence[int]) -> Dict
 
 def _mixed(mesh: Mesh, parts: Sequence[Tuple[str, float]]) -> np.ndarray:
     """(V, 3) that shares of the mesh's own shapes add."""
-    total = np.zeros_like(mesh.vertices)
-    for name, share in parts:
-        total += share * mesh.shapes[name]
+    total = sum((share * mesh.shapes[name] for name, share in parts), np.zeros_like(mesh.vertices))
     return _placed(total, np.eye(3), np.zeros(3)).astype(np.float32)

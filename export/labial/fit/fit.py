@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
@@ -12,6 +11,7 @@ from typing import Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from labial.errors import LabialError
+from labial.files.grammar import Content
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, own, read_table
 from labial.fit.kinds import KINDS, kind_of, prepare, unknown
@@ -74,7 +74,7 @@ def fit(paths: Sequence[str], points: Mapping[str, int], shapes: Optional[str], 
     spelled = output_names(heads[0].shapes)
     strange = {shape: f"in the file: {shape}" for shape in files.values() if spelled[shape] != shape}
     text = describe(solution, [files[shape] for shape in order], remarks, strange, spelled)
-    rig = _read_back(text, name, paths[0])
+    rig = replace(read(Content(text.encode(), f"{paths[0]}: its rig"), name), path=paths[0])
     report.append(f"{len(rig.outputs)} of {len(order)} shapes are used, of the kind {kind}")
     motion = read_sentences()
     weights = outputs(rig, motion.frames)
@@ -109,17 +109,6 @@ def _kind(shapes: Optional[str], head: Head) -> Tuple[str, Sequence[str]]:
     if shapes in KINDS or shapes == "other":
         return shapes, ()
     return "other", [shape.strip() for shape in shapes.split(",")]
-
-
-def _read_back(text: str, name: str, avatar: str) -> Rig:
-    """The rig that the text describes; errors name the avatar, not a file that is gone."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, f"{name}.toml")
-        Path(path).write_text(text, encoding="utf-8")
-        try:
-            return replace(read(path, name), path=avatar)
-        except LabialError as error:
-            raise LabialError(str(error).replace(path, f"{avatar}: its rig", 1)) from None
 
 
 # ---- A solution as a description that labial rig reads ---------------------------------------------------------------
