@@ -105,14 +105,12 @@ def read_landmarks(path: PathLike, given: Given) -> Landmarks:
 def _pixels(path: PathLike, points: np.ndarray, size: Optional[Tuple[int, int]]) -> np.ndarray:
     """Factors of x, y and z that bring `points` to one unit."""
     eyes = np.nanmedian(np.abs(points[:, INDEX[263], 0] - points[:, INDEX[33], 0]))
-    factors = np.ones(points.shape[2])
-    if eyes < 1:  # eyes less than a pixel apart: coordinates are shares of the image
-        if size is None:
-            raise DataError(path, None, "coordinates are shares of the image, whose size the file does not tell: "
-                            "give --size WIDTHxHEIGHT")
-        factors[:] = size[0]
-        factors[1] = size[1]
-    return factors
+    if not eyes < 1:
+        return np.ones(points.shape[2])
+    if size is None:  # eyes less than a pixel apart: coordinates are shares of the image
+        raise DataError(path, None, "coordinates are shares of the image, whose size the file does not tell: "
+                        "give --size WIDTHxHEIGHT")
+    return np.array([*size, size[0]], dtype=float)[: points.shape[2]]
 
 
 def _check_orientation(path: PathLike, points: np.ndarray) -> None:
@@ -143,9 +141,8 @@ def _array(path: PathLike, table: Dict[str, np.ndarray]) -> np.ndarray:
     if points.ndim != 3 or points.shape[1] not in _COUNTS or points.shape[2] not in (2, 3):
         raise DataError(path, None, f"landmarks have the shape {points.shape}, not (frames, 468 or 478, 2 or 3)")
     points = _numbers(path, "landmarks", points[:, list(USED)])
-    wrong = (np.abs(points) > _LARGEST_COORDINATE).any(axis=(1, 2))
-    if wrong.any():
-        raise DataError(path, None, f"frame {int(np.argmax(wrong))}: a coordinate is beyond {_LARGEST_COORDINATE:g}")
+    for frame in np.flatnonzero((np.abs(points) > _LARGEST_COORDINATE).any(axis=(1, 2))):
+        raise DataError(path, None, f"frame {frame}: a coordinate is beyond {_LARGEST_COORDINATE:g}")
     return points
 
 
@@ -156,9 +153,7 @@ def _scores(path: PathLike, table: Dict[str, np.ndarray]) -> Optional[np.ndarray
     count = len(table["landmarks"])
     if pucker.shape != (count,):
         raise DataError(path, None, f"pucker has the shape {pucker.shape}, but there are {count} frames")
-    wrong = (pucker < 0) | (pucker > 1)
-    if wrong.any():
-        frame = int(np.argmax(wrong))
+    for frame in np.flatnonzero((pucker < 0) | (pucker > 1)):
         raise DataError(path, None, f"frame {frame}: the score pucker is {pucker[frame]:g}, not within 0 .. 1")
     return pucker
 
@@ -175,9 +170,9 @@ def _times(path: PathLike, table: Dict[str, np.ndarray], count: int, given: Give
     if "fps" not in table:
         return None
     rate = _numbers(path, "fps", table["fps"])
-    if rate.size != 1 or not _RATES[0] <= float(rate.reshape(-1)[0]) <= _RATES[1]:
+    fps = rate.item() if rate.size == 1 else np.nan
+    if not _RATES[0] <= fps <= _RATES[1]:
         raise DataError(path, None, f"fps is not one number within {_RATES[0]:g} .. {_RATES[1]:g}")
-    fps = float(rate.reshape(-1)[0])
     if given.fps is not None and abs(given.fps - fps) > 0.01:
         raise DataError(path, None, f"--fps says {given.fps:g} frames per second, the file {fps:g}")
     return np.arange(count) / fps

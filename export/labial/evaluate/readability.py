@@ -2,26 +2,23 @@
 
 The reader is Fisher's linear discriminant analysis with a shrunk covariance (scikit-learn), one for each class of
 interchangeable words. Its features of a word are the motion of all 13 channels from MARGIN before to MARGIN after it,
-sampled at POINTS moments that are spread evenly over that time, so that durations carry no information, less each
-channel's mean over them, so that the talker's resting position carries none either: (13 POINTS,) features.
+at POINTS moments spread evenly, so that durations carry no information, less each channel's mean over them, so that the
+talker's resting position carries none either.
 
-* **Known words.** Trained on human motion of the training part, it reads the test part. If all utterances of a corpus
-have the same number of words, and each word one place, as in a command grammar, classes are by place; otherwise all
-words are one class. Words that occur less than LEAST times in the training part are omitted.
-* **Unseen words**, where the words that are judged were held out of training: only these are distinguished. A reader
-  cannot read a word without having seen people say it, so here it is trained on human motion of the test part, in FOLDS
-  parts: the tokens of each part, in every method's motion and in the human's, are read by a reader that was trained on
-  the human tokens of the other parts. All tokens of an utterance are in the same part, drawn by the seed.
+* **Known words.** Trained on human motion of the training part, it reads the test part. Classes are by place where all
+  utterances have the same number of words and each word one place, as in a command grammar; else all words are one
+  class. Words that occur less than LEAST times in the training part are omitted.
+* **Unseen words**, held out of training: only these are distinguished. A reader cannot read a word without having seen
+  people say it, so it is trained on human motion of the test part, in FOLDS parts, which the seed draws by utterances:
+  a reader of the human tokens of all other parts reads the tokens of each part, in every method's motion.
 
-Readability is the share of correctly read tokens in each class, averaged over the classes, all with the same weight. It
-is not corrected for chance.
+Readability is the share of correctly read tokens, the mean over classes; it is not corrected for chance.
 
-Synthetic motion is a mean, without people's variation between utterances, so that a reader trained on people
-overestimates or underestimates its clarity. *With residual* each token therefore gets the residual of a token of
-another utterance: the features of a human token of the reader's training, less the mean over the n human tokens of its
-word, times sqrt(n / (n - 1)). This is the variation within words that the reader expects. Tokens are drawn by the seed,
-REPEATS times each, and the same ones for every method. The human's motion with a residual varies twice, so compare
-methods with residual with the human without residual.
+Synthetic motion is a mean, without people's variation between utterances, so that a reader trained on people misjudges
+its clarity. *With residual* each token therefore gets that variation as the reader expects it: the features of a human
+token of its training, less the mean over the n human tokens of that word, times sqrt(n / (n - 1)). These tokens are
+drawn by the seed, REPEATS times each, the same for every method. The human's motion with a residual varies twice, so
+compare methods with residual with the human without.
 """
 
 from __future__ import annotations

@@ -34,10 +34,10 @@ class Kind(NamedTuple):
     fixed: Mapping[str, Mapping[str, float]]
 
 
+_PRESSING = ("mouthPress", "mouthRollUpper", "mouthShrugUpper", "mouthShrugLower")
 _ARKIT = Kind(
     {
-        "jawOpen": ("jaw", "upper_lip", "lower_lip"),
-        "mouthClose": ("jaw", "upper_lip", "lower_lip"),
+        **dict.fromkeys(("jawOpen", "mouthClose", *_PRESSING), ("jaw", "upper_lip", "lower_lip")),
         "mouthFunnel": ("push_t_lip", "upper_lip", "lower_lip", "spread"),
         "mouthPucker": ("push_t_lip", "push_b_lip", "spread"),
         "mouthSmile": ("jaw", "spread", "corner"),
@@ -45,16 +45,10 @@ _ARKIT = Kind(
         "mouthStretch": ("spread", "corner"),
         "mouthUpperUp": ("upper_lip", "lower_lip"),
         "mouthLowerDown": ("jaw", "lower_lip"),
-        "mouthPress": ("jaw", "upper_lip", "lower_lip"),
-        "mouthRollUpper": ("jaw", "upper_lip", "lower_lip"),
         "mouthRollLower": (),
-        "mouthShrugUpper": ("jaw", "upper_lip", "lower_lip"),
-        "mouthShrugLower": ("jaw", "upper_lip", "lower_lip"),
     },
-    {"mouthRollLower": 0.4, **dict.fromkeys(("mouthPress", "mouthRollUpper", "mouthShrugUpper", "mouthShrugLower"),
-                                            0.6)},
-    dict.fromkeys(("mouthPress", "mouthRollUpper", "mouthShrugUpper", "mouthShrugLower", "mouthSmile", "mouthFrown"),
-                  4.0),
+    {"mouthRollLower": 0.4, **dict.fromkeys(_PRESSING, 0.6)},
+    dict.fromkeys((*_PRESSING, "mouthSmile", "mouthFrown"), 4.0),
     {"mouthRollLower": _TO_THE_TEETH},
 )
 _OCULUS = Kind(
