@@ -1,6 +1,7 @@
 /*
  * motion_works.c - what a board shows and moves, drawn from a seed, and its CRC-32. Passes if these are those of the
- * player in tests/python/test_beside.py and of the face in tests/python/test_face.py, which is written anew there.
+ * host, whose player tests/c/test_beside.c compares with a plain one, and those of the face that is written anew in
+ * tests/python/test_face.py.
  */
 #include "board.h"
 #include "drawn.h"

@@ -13,9 +13,8 @@ import struct
 import subprocess
 import sys
 import time
-import zlib
 from pathlib import Path
-from typing import Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 import pytest
@@ -136,25 +135,9 @@ def test_a_stream_is_packed_as_it_comes(tmp_path: Path) -> None:
     assert [row for packet in packets for row in parse(packet.data).frames] == expected(motion, fast)
 
 
-def test_repeated_frames_make_up_for_a_lost_packet() -> None:
-    """Catches repeats that are not the frames before, and ones across a gap."""
-    motion = labial.render(HELLO)
-    lips = labial.Beside(FACE, frames=5, repeat=5)
-    first, second = (lips.packets(motion, sample=sample, sample_rate=16000) for sample in (0, 32000))
-    wanted = expected(motion)
-    for start, packets in ((0, first), (100, second)):
-        assert [packet.frame for packet in packets] == list(range(start, start + len(motion), 5))
-        for lost in range(len(packets) - 1):
-            rows = {}
-            for packet in packets[:lost] + packets[lost + 1 :]:
-                parsed = parse(packet.data)
-                rows.update({parsed.first + k: row for k, row in enumerate(parsed.frames)})
-            assert [rows[start + k] for k in range(len(motion))] == wanted
-
-
 @pytest.mark.parametrize("repeat", [0, 1, 2, 3, 5, 40])
 def test_packets_repeat_as_many_frames_as_there_are(repeat: int) -> None:
-    """Also more than a packet has, from the first packet on; and on from where the one before ended."""
+    """Also more than a packet has, from the first packet on; on from where the one before ended, not across a gap."""
     motion = labial.render(HELLO)[:24]
     lips, wanted = labial.Beside(FACE, frames=2, repeat=repeat), expected(motion)
     packets = lips.packets(motion[:12], sample=0, sample_rate=16000)
@@ -163,10 +146,13 @@ def test_packets_repeat_as_many_frames_as_there_are(repeat: int) -> None:
     for packet in packets:
         parsed, first = parse(packet.data), max(packet.frame - repeat, 0)
         assert (parsed.first, parsed.frames) == (first, wanted[first : packet.frame + 2])
+    behind = [parse(packet.data) for packet in lips.packets(motion[:4], sample=32000, sample_rate=16000)]
+    assert [parsed.first for parsed in behind] == [100, max(102 - repeat, 100)]
 
 
 def test_hello_and_cancel() -> None:
-    """Catches a rest that is not the rig's, frames that survive a cancel, and numbers that begin again."""
+    """Catches a rest that is not the rig's, frames that survive a cancel, numbers that begin again, and connections
+    that all have the same session."""
     lips = labial.Beside(FACE, session=258)
     assert parse(lips.hello()) == (0, 0, 258, bytes([0, 128]), []) and lips.session == 258
     lips.push(labial.render(HELLO)[:15])
@@ -174,12 +160,8 @@ def test_hello_and_cancel() -> None:
     assert lips.flush() == [] and lips.rig.values == {"jaw": 1400, "upper_lip": 1500}
     assert lips.packets([(0,) * 13] * 3, sample=24000 + 161, sample_rate=16000)[0].frame == 76, "the nearest frame"
     assert parse(lips.cancel(2**32 * 320, 16000)).first == 0, "modulo 2^32"
-
-
-def test_sessions_differ() -> None:
-    """Catches servers that all have the same one, and connections of one that do."""
     found = {labial.Beside(FACE).session for _ in range(20)}
-    assert len(found) > 15 and max(found) > 255
+    assert len(found) > 15 and max(found) > 255, "of their own"
 
 
 @pytest.mark.parametrize(("options", "message"), [
@@ -212,91 +194,6 @@ def test_wrong_frames_and_times_are_refused(tmp_path: Path) -> None:
                     "maximum = 1\n", encoding="utf-8")
     with pytest.raises(LabialError, match="limits of jaw are more than 8000000 apart"):
         labial.Beside(wide)
-
-
-# ---- What boards show ------------------------------------------------------------------------------------------------
-
-
-class Player:
-    """The player of labial/beside.h as its comments say, on a dictionary of frames and exact times."""
-
-    HOLD, EASE = 5, 6
-
-    def __init__(self, rate: int, room: int) -> None:
-        self.rate, self.room, self.now, self.quiet = rate, room, 0, self.HOLD + self.EASE
-        self.frames: Dict[int, Tuple[bytes, bool]] = {}  #: by number: values, and whether they were shown
-        self.rest = self.pose = self.goal = bytes(2)
-        self.limits = (100, 255)
-        self.session: Optional[int] = None
-
-    def feed(self, cancels: bool, first: int, session: int, rest: bytes, frames: Sequence[bytes]) -> int:
-        begins, self.session, before = session != self.session, session, self.session
-        self.rest = rest
-        if before is None:
-            self.pose = rest
-        if cancels or begins:
-            self.frames.clear()
-            self.quiet = max(self.quiet, self.HOLD)
-            self.now = first if begins else max(self.now, first)
-        for number, row in enumerate(frames, first):
-            if self.now <= number < self.now + self.room and not self.frames.get(number, (b"", False))[1]:
-                self.frames[number] = (row, False)
-        return 5 if begins and before is not None else 4 if cancels else 0
-
-    def at(self, sample: int) -> int:
-        frame = sample * 50 // self.rate
-        if frame <= self.now - self.room:
-            self.frames.clear()
-            self.now = frame
-        self.now = max(self.now, frame)
-        self.frames = {number: found for number, found in self.frames.items() if number >= self.now}
-        row, old = self.frames.get(frame, (b"", True))
-        if old:
-            self.quiet = min(self.quiet + 1, self.HOLD + self.EASE)
-        else:
-            self.frames[frame], self.goal, self.quiet = (row, True), row, 0
-        left = max(self.HOLD + self.EASE + 1 - self.quiet, 1) if self.quiet > self.HOLD else 1
-        goal = self.rest if self.quiet > self.HOLD else self.goal
-        moves = [int((to - value) / left) for value, to in zip(self.pose, goal)]
-        self.pose = bytes(value + min(max(move, -most), most)
-                          for value, move, most in zip(self.pose, moves, self.limits))
-        return 0 if self.quiet <= self.HOLD else 2
-
-
-def test_what_boards_show() -> None:
-    """Catches a number in tests/device/motion_works.c that the library itself made."""
-    seed, shown, session = 1, bytearray(), 0
-
-    def draw(below: int) -> int:
-        nonlocal seed
-        seed = (seed * 1664525 + 1013904223) % 2**32
-        return (seed >> 8) % below
-
-    def packet(frame: int) -> Tuple[bool, int, int, bytes, List[bytes]]:
-        nonlocal session
-        first = max(frame + draw(40) - 8, 0)
-        cancels, frames = draw(20) == 0, draw(17)
-        session += draw(60) == 0
-        rows = [bytes((draw(256), draw(256))) for _ in range(frames + 1)]
-        return cancels, first, 0x5A00 + session % 256, rows[0], rows[1:]
-
-    for rate in (8000, 11025, 48000):
-        player, sample, frame = Player(rate, 32), 0, 0
-        for call in range(3000):
-            if draw(4) == 0 or call == 0:
-                shown.append(player.feed(*packet(frame)))
-            result = player.at(sample)
-            unit = 1900 - (3300 * player.pose[0] + 127) // 255
-            shown += bytes([result, *player.pose, unit >> 4 & 255])
-            if draw(50) == 0:
-                sample += draw(3) * rate
-                frame += draw(100)
-            elif draw(20) > 0:
-                sample += rate // 50 + draw(64) - 32
-                frame += 1
-    device = (SOURCE / "tests" / "device" / "motion_works.c").read_text(encoding="utf-8")
-    assert f"#define SHOWN {zlib.crc32(shown):#010x}u\n" in device
-    assert len(set(shown[1::5])) > 1
 
 
 # ---- From end to end -------------------------------------------------------------------------------------------------
@@ -428,11 +325,10 @@ def closures(lines: Sequence[Shown], spoken: Said, start: int) -> int:
     return found
 
 
-@pytest.mark.parametrize("jitter", [[], ["jitter"]])
-def test_a_toy_shows_what_is_heard(toy: Path, server: Tuple[int, int], jitter: List[str]) -> None:
+def test_a_toy_shows_what_is_heard(toy: Path, server: Tuple[int, int]) -> None:
     """Catches lips that are not in step with the samples, in one utterance and in the next; lips that are open in p, b,
     m; and pulses that are not the rig's."""
-    lines = play(toy, server[0], "say Mama may pop a bubble.\nplay 60000\nsay Bob may be happy.\nplay 60000\n", *jitter)
+    lines = play(toy, server[0], "say Mama may pop a bubble.\nplay 60000\nsay Bob may be happy.\nplay 60000\n", "jitter")
     first, second = said("Mama may pop a bubble."), said("Bob may be happy.")
     blocks = [line.sample for line in lines]
     start = -(-round(sum(length for _, length in first.timings)) // 60) * 60 * RATE_OF_VOICE // 1000
@@ -495,26 +391,19 @@ needs_flite = pytest.mark.skipif(not shutil.which("flite"), reason="no flite: in
     (["--ahead", "nan"], 2, "server: argument --ahead: 'nan' is not a number from 0 to 600"),
     (["--port", "65536"], 2, "server: argument --port: '65536' is not a whole number within 0 .. 65535"),
     (["--hurry"], 2, "server: unrecognized arguments: --hurry"),
+    ([], 1, "server: the voice needs flite: apt-get install flite"),
 ])  # fmt: skip
 def test_a_server_checks_what_it_is_given(options: List[str], status: int, message: str, tmp_path: Path) -> None:
     """Catches a server that prints its port and fails at the first toy, a voice that flite silently replaces, and a
     traceback."""
-    with serve("--port", "0", *options) as process:
+    with serve("--port", "0", *options, **({} if options else {"PATH": str(tmp_path)})) as process:
         out, err = process.communicate(timeout=30)
     assert (process.returncode, out) == (status, "")
     assert err.startswith(message) and err.count("\n") == 1
 
 
-def test_a_server_without_flite_says_so(tmp_path: Path) -> None:
-    """Catches a traceback, and a port that is printed by a server that cannot speak."""
-    with serve("--port", "0", PATH=str(tmp_path)) as process:
-        out, err = process.communicate(timeout=30)
-    assert (process.returncode, out, err) == (1, "", "server: the voice needs flite: apt-get install flite\n")
-
-
 @needs_flite
 def test_a_port_that_is_taken() -> None:
-    """Catches a traceback."""
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
         with serve("--port", str(port)) as process:
@@ -607,19 +496,23 @@ def test_limits_of_a_server() -> None:
     assert all(line.startswith("server: ") for line in told)
 
 
-@pytest.mark.parametrize("arguments", [[], ["x"], ["0"], ["65536"], ["1", "lose"], ["1", "lose", "x"], ["1", "hurry"]])
-def test_a_toy_checks_its_arguments(toy: Path, arguments: List[str]) -> None:
-    """Catches a port of 0, and options that are passed over."""
-    done = subprocess.run([toy, *arguments], capture_output=True, text=True, check=False, timeout=10)
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", "usage: toy PORT [lose N] [jitter]\n")
+def refused(toy: Path, *arguments: object, text: str = "") -> Tuple[int, str]:
+    """The status of a toy that prints nothing, and what it says."""
+    done = subprocess.run([toy, *map(str, arguments)], input=text, capture_output=True, text=True, check=False,
+                          timeout=10)
+    assert done.stdout == ""
+    return done.returncode, done.stderr
 
 
-def test_a_toy_without_a_server(toy: Path) -> None:
-    """Catches a sentence that names no port, and a line of input that does nothing."""
+def test_a_toy_checks_what_it_is_given(toy: Path, server: Tuple[int, int]) -> None:
+    """Catches a port of 0, options that are passed over, a sentence that names no port, a line that does nothing."""
+    for arguments in ([], ["x"], ["0"], ["65536"], ["1", "lose"], ["1", "lose", "x"], ["1", "hurry"]):
+        assert refused(toy, *arguments) == (2, "usage: toy PORT [lose N] [jitter]\n")
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
-    done = subprocess.run([toy, str(port)], capture_output=True, text=True, check=False, timeout=10)
-    assert (done.returncode, done.stderr) == (1, f"toy: port {port}: Connection refused\n")
+    assert refused(toy, port) == (1, f"toy: port {port}: Connection refused\n")
+    assert refused(toy, server[0], text="sing\n") == (
+        1, "toy: standard input: a line is neither say TEXT, play MS nor stop\n")
 
 
 @pytest.mark.slow
@@ -640,11 +533,3 @@ def test_a_toy_whose_server_dies_or_stops(toy: Path, number: int, complaint: str
             _, err = playing.communicate(timeout=PATIENCE + 60)
     assert playing.returncode == 1
     assert err.startswith(complaint) and err.count("\n") == 1 and "Success" not in err
-
-
-def test_a_toy_refuses_other_commands(toy: Path, server: Tuple[int, int]) -> None:
-    """Catches a line that the server passes over, for which the toy's time then stands still."""
-    done = subprocess.run([toy, str(server[0])], input="sing\n", capture_output=True, text=True, check=False,
-                          timeout=10)
-    assert done.returncode == 1
-    assert done.stderr == "toy: standard input: a line is neither say TEXT, play MS nor stop\n"
