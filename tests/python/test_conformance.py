@@ -119,18 +119,6 @@ def test_streams_reach_the_edge_cases(
     assert {name for name, _ in again} == {"cancelled_twice"} and {0, 6, 14} <= {at for _, at in again}
 
 
-def test_a_second_cancel_starts_from_the_pose_reached(
-    models: Dict[str, ExportedModel], scripts: List[Script], frames: Frames
-) -> None:
-    """The frames differ widely from those of an easing that begins anew from the pose of the first cancel."""
-    shown = frames["cancelled_twice"]
-    pose = shown[8]  # the last frame before the cancel
-    moved = np.abs(pose).max()
-    assert moved > 100 and np.abs(shown[14]).max() < 0.9 * moved  # six frames of easing later
-    assert np.abs(shown[15] - shown[14]).max() < 0.05 * moved  # no jump back
-    assert shown[21].any() and not shown[22].any()  # three, then five more
-
-
 def runs_of(*pushes: Tuple[str, int, int]) -> List[regenerate.Run]:
     return regenerate.runs([Push(*push) for push in pushes], 50)
 
@@ -141,17 +129,6 @@ def test_runs_are_those_of_frames() -> None:
     assert [(run.model, run.begin, run.phonemes, run.counts) for run in found] == [
         ("speech", 0, ((3, 60), (4, 11)), (3, 1)), ("laughter", 4, ((2, 45), (1, 36)), (2, 2))]
     assert runs_of(("speech", 1, 9)) == []
-
-
-def test_a_fade_moves_on_and_arrives() -> None:
-    """By its formula, frame by frame: base + (fresh - base) (3 s^2 - 2 s^3), s = j / 9, base = held + v - v / 2^j."""
-    fresh = np.full((8, 13), 90.0)
-    found = regenerate.faded(np.zeros(13), np.full(13, 16.0), fresh)
-    for j in range(1, 9):
-        base, s = 16.0 - 16.0 / 2**j, j / 9.0
-        assert np.allclose(found[j - 1], base + (90.0 - base) * (3 * s * s - 2 * s**3))
-    assert np.allclose(regenerate.faded(np.zeros(13), np.zeros(13), fresh[:3]), found[:3] - np.array(
-        [[(16.0 - 16.0 / 2**j) * (1 - 3 * (j / 9) ** 2 + 2 * (j / 9) ** 3)] * 13 for j in (1, 2, 3)]))
 
 
 def test_one_run_is_the_reference(models: Dict[str, ExportedModel]) -> None:

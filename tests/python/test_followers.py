@@ -27,8 +27,6 @@ from labial.tables.followers import (
     columns,
     complete,
     every,
-    in_integers,
-    integer_range,
     interpolated,
     is_symmetric,
     mirrored,
@@ -56,16 +54,6 @@ def computing(model: Model) -> Model:
 def symmetric(model: Model) -> Model:
     """The model with its right side after its left one."""
     return replace(model, source=mirrored())
-
-
-def test_integers_by_hand() -> None:
-    """Intervals of 10 FAP units from -80 on, each 20 higher: would catch a range or a share that is off."""
-    low, gain = integer_range(np.array([-80.0, 80.0]))
-    values = np.arange(VALUES) * 20 * 16
-    corners = 16 * np.array([[-500, -500], [-80, -80], [-70, -80], [0, 0], [-100, 105], [80, 80], [2000, 2000]])
-    found = in_integers(corners, low, gain, values) / 16
-    np.testing.assert_allclose(found, [0, 0, 10, 160, 165, 320, 320], atol=0.15)
-    np.testing.assert_allclose(interpolated(corners / 16, np.array([-80.0, 80.0]), values / 16), found, atol=0.15)
 
 
 def test_frames_are_made_of_their_sources() -> None:

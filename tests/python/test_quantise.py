@@ -180,15 +180,6 @@ def test_a_state_that_is_hardly_held_is_held_by_the_least() -> None:
     np.testing.assert_allclose(found[[0, 2, 3]], weights_of(model)[[0, 2, 3]])
 
 
-def test_delta_never_outweighs_delta_delta() -> None:
-    """A quarter of delta's precision above delta-delta's would make kappa negative."""
-    model = plain()
-    precision = model.state_precision.copy()
-    precision[:, 3, 1] = 4 * 60.0
-    found = weights_of(dataclasses.replace(model, state_precision=precision))
-    assert found[3, 2] == found[3, 3] and (found[:3, 2] < found[:3, 3]).all()
-
-
 @pytest.mark.parametrize("feature", [1, 2])
 def test_means_that_pull_too_far_lose_weight(feature: int) -> None:
     """One state's delta or delta-delta mean of 900 FAP units, 14,400 positions: 4 weights times that may be PULL_MAX

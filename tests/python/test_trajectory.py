@@ -1,5 +1,6 @@
-"""Equation 3 against a dense solution of its definition and against SPTK's mlpg; its window; the published joins.
-Contacts: where they are, how long, and what they do to the targets and to equation 3, worked by hand."""
+"""Equation 3 against a dense solution of its definition and against SPTK's mlpg; its window. Phonemes to frames, and
+contacts: where they are, how long, and what they do to the targets and to equation 3, worked by hand. tests/c has these
+steps once more, and test_conformance.py what the library and this reference make of them."""
 
 from __future__ import annotations
 
@@ -12,10 +13,10 @@ import pytest
 
 from labial.reference import published
 from labial.reference.contact import raised
-from labial.reference.stream import aims
+from labial.reference.stream import aims, synthesise
 from labial.reference.tables import Equation, ExportedTables, FloatTables
-from labial.reference.trajectory import forward, solve, solve_whole, starts
-from labial.reference.units import rest, segments
+from labial.reference.trajectory import solve, solve_whole, starts
+from labial.reference.units import Segment, frame_counts, rest, segments, unit_ends
 from labial.tables.quantise import quantise
 from models import random_model, streams
 from packages import sptk
@@ -65,16 +66,6 @@ def test_solves_equation_3_as_it_is_defined(frames: int) -> None:
             assert np.allclose(found[:, channel], expected, atol=1e-8)
 
 
-@pytest.mark.parametrize("stiffness", [0.01, 1.0, 300.0])
-def test_stays_exact_where_frames_are_hardly_held(stiffness: float) -> None:
-    """Moving weights of 300 times what holds a frame, ten times what exported models may have, over a long stream: the
-    factorisation by row sums has no small difference of large numbers to lose."""
-    item = terms(np.random.default_rng(9), 300)
-    item.weight[..., 1:] *= stiffness
-    for channel in range(2):
-        assert np.allclose(solve_whole(item)[:, channel], dense(item, channel), atol=1e-6)
-
-
 def test_agrees_with_sptk() -> None:
     """An independent implementation of the published equation, without anchors."""
     program = sptk("mlpg")
@@ -109,40 +100,52 @@ def test_starts_by_hand() -> None:
     assert starts(20, 1, 4)[:4, 7].tolist() == [4, 5, 6, 7] and starts(1, 3, 4).tolist() == [[0] * 13]
 
 
-@pytest.mark.parametrize(("frames", "stride", "window"), [(1, 3, 4), (9, 1, 1), (40, 3, 4), (41, 8, 2), (17, 2, 40)])
-def test_starts_are_as_far_ahead_as_promised(frames: int, stride: int, window: int) -> None:
-    """At least the window, less than a stride more, or the end; each frame once, in blocks of the channel's grid."""
-    found = starts(frames, stride, window)
-    ahead = found - np.arange(frames)[:, None]
-    assert ((ahead >= window) | (found == frames - 1)).all() and (ahead <= window + stride).all()
-    assert ((ahead < window + stride) | (found == frames - 1)).all()
-    inside = found < frames - 1
-    channel = np.broadcast_to(np.arange(13), found.shape)
-    assert ((found + 1 - channel)[inside] % stride == 0).all()
+# ---- Phonemes to frames ----------------------------------------------------------------------------------------------
 
 
-def test_a_longer_window_comes_nearer_to_the_whole() -> None:
-    """The default loses little; 12 frames more lose a hundredth of it. A start taken from a wrong frame would not."""
-    item = terms(np.random.default_rng(8), 200, channels=13)
-    whole = solve_whole(item)
-    error = [np.sqrt(((solve(item, starts(200, 3, window)) - whole) ** 2).mean()) for window in (1, 4, 16)]
-    assert error[0] > 2 * error[1] and error[1] > 100 * error[2]
+SIL, OPEN, LIPS = 0, 1, 2
 
 
-def test_rows_sum_to_what_holds_them() -> None:
-    """rho and kappa by their meaning: where hardly any but the first frame is held, it draws all."""
-    item = terms(np.random.default_rng(2), 25, anchors=False)
-    item.weight[1:, :, 0] = 1e-12
-    item.mean[..., 1:] = 0.0
-    settled, rho, kappa = forward(item)
-    assert np.allclose(settled, item.mean[0, :, 0]) and np.allclose(solve_whole(item), item.mean[0, :, 0])
-    assert np.allclose(rho[-1], 1.0) and not kappa[-2:].any()  # nothing lies beyond the last frame
+@pytest.mark.parametrize("fps", [25, 50, 60, 100])
+def test_frames_amount_to_the_rounded_sum(fps: int) -> None:
+    """Rounding each duration by itself would drift: 300 phonemes of 1 ms are 15 frames at 50 per second, not none."""
+    rng = np.random.default_rng(fps)
+    for durations in ([1] * 300, [0, 0, 3], [3_600_000, 1], list(rng.integers(0, 400, 500))):
+        total = sum(int(d) for d in durations) * fps
+        assert sum(frame_counts(durations, fps)) == (total + 500) // 1000
+
+
+@pytest.mark.parametrize(("pushed", "ahead", "fps", "expected"), [
+    # 500 ms are 25 frames; the last six, 120 ms, may depend on the vowel behind, the others must not wait for it.
+    ([(OPEN, 100), (SIL, 500), (OPEN, 60)], 6, 50,
+     [Segment(OPEN, 100, 5), Segment(SIL, 380, 19, 0), Segment(SIL, 120, 6, 1, 19), Segment(OPEN, 60, 3)]),
+    # A pause that the kernels span is not cut, nor what is no pause, nor anything where nothing looks ahead.
+    ([(SIL, 125), (OPEN, 500), (SIL, 140)], 6, 50,
+     [Segment(SIL, 125, 6), Segment(OPEN, 500, 25), Segment(SIL, 20, 1, 0), Segment(SIL, 120, 6, 1, 1)]),
+    ([(SIL, 140)], 0, 50, [Segment(SIL, 140, 7)]),
+    # At 60 frames a second five frames are 83.3 ms: the tail has 83, the head the rest.
+    ([(SIL, 200)], 5, 60, [Segment(SIL, 117, 7, 0), Segment(SIL, 83, 5, 1, 7)]),
+    # The device keeps milliseconds in 16 bits; a head of 65,535 ms less its tail is what it sees of an hour.
+    ([(SIL, 3_600_000)], 6, 50, [Segment(SIL, 65415, 179994, 0), Segment(SIL, 120, 6, 1, 179994)]),
+    ([(OPEN, 70_000)], 6, 50, [Segment(OPEN, 65535, 3500)]),
+    # 9 ms are no frame, but with 11 more they are one.
+    ([(OPEN, 9), (LIPS, 11), (OPEN, 0)], 6, 50, [Segment(LIPS, 11, 1)]), ([(OPEN, 9)], 6, 50, []),
+])  # fmt: skip
+def test_segments_by_hand(pushed: List[Tuple[int, int]], ahead: int, fps: int, expected: List[Segment]) -> None:
+    assert segments(pushed, SIL, ahead, fps) == expected
+
+
+def test_a_unit_ends_with_its_boundary_phoneme_and_with_the_stream() -> None:
+    """The boundary phoneme's last frame, not its first, and no frame of what follows."""
+    boundary = np.array([False, True, False])
+    held = [Segment(LIPS, 40, 2), Segment(OPEN, 60, 3), Segment(SIL, 20, 1), Segment(SIL, 20, 1), Segment(LIPS, 40, 2)]
+    assert np.flatnonzero(unit_ends(held, boundary)).tolist() == [4, 8]
+    assert unit_ends([], boundary).shape == (0,) and synthesise(FloatTables(random_model(1)), []).shape == (0, 13)
 
 
 # ---- Contacts --------------------------------------------------------------------------------------------------------
 
 
-SIL, OPEN, LIPS = 0, 1, 2
 FLOOR = np.array([[-np.inf, -np.inf], [-50.0, -np.inf], [40.0, 10.0]])  # lips meet in the first of two channels
 CONTACT = np.array([[False, False], [False, False], [True, False]])
 
@@ -174,15 +177,6 @@ def test_floors_hold_where_contact_is() -> None:
     deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), np.zeros(2, dtype=int), SIL, FLOOR,
                   CONTACT, parted=np.zeros(2))[0]
     assert deep.tolist() == [[-50.0, -80.0]] * 2
-
-
-def test_a_hum_stays_closed_but_for_seven_frames() -> None:
-    """Of fourteen frames these are half."""
-    first, second, contact = shut((LIPS, 30))
-    assert contact == [False] * 3 + [True] * 23 + [False] * 4 and first == [40.0 * closed for closed in contact]
-    assert second == [10.0] * 30  # what is no contact stays
-    assert shut((LIPS, 15))[2] == [False] * 3 + [True] * 8 + [False] * 4
-    assert shut((LIPS, 14))[2] == [False] * 3 + [True] * 7 + [False] * 4
 
 
 def test_a_longer_closure_holds_its_middle() -> None:
@@ -221,14 +215,6 @@ def test_a_mouth_comes_to_rest_in_pauses() -> None:
     target, contact = raised(np.full((21, 2), 64.0), labels, length, step, SIL, floor, resting, parted=np.zeros(2))
     assert not contact.any() and (target[:, 1] == 64.0).all()
     np.testing.assert_allclose(target[:, 0], 64.0 - 224.0 * step / 16)
-
-
-def test_whole_numbers_come_to_rest_as_c_divides() -> None:
-    """Towards zero: 7 positions on the way to 0, and -7, lose as much."""
-    floor, resting = np.array([[0, 0]]), np.array([[True, True]])
-    aim, step = np.repeat([[7, -7]], 20, axis=0), np.minimum(np.arange(1, 21), 16)
-    found = raised(aim, np.zeros(20, dtype=int), np.array([20]), step, SIL, floor, resting, parted=np.zeros(2))[0]
-    assert found[:4].tolist() == [[7, -7], [7, -7], [6, -6], [6, -6]] and not found[15:].any()
 
 
 @pytest.mark.parametrize("seed", range(4))

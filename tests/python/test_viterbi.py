@@ -1,9 +1,10 @@
-"""The search against hmmlearn, against trying every path, and against its rules written out state by state."""
+"""The search against hmmlearn, against trying every path, and by hand. tests/c/test_viterbi.c has its rules once more,
+and test_conformance.py what the library and this reference make of them."""
 
 from __future__ import annotations
 
 import itertools
-from typing import List, Optional
+from typing import List
 
 import numpy as np
 import pytest
@@ -14,12 +15,11 @@ from labial.evaluate.search import units_path
 from labial.reference.published import path_cost
 from labial.reference.stream import aims
 from labial.reference.tables import ExportedTables, FloatTables
-from labial.reference.viterbi import Chains, block_at, block_ends, decode, looked_at, normal_chains, window
+from labial.reference.viterbi import Chains, block_ends, decode, looked_at, normal_chains, window
 from labial.tables.fixed import LEAP, SEARCHED
 from labial.tables.model import load
 from labial.tables.phones import drawn_streams
-from labial.tables.quantise import ExportedModel, quantise
-from models import random_model, streams
+from labial.tables.quantise import quantise
 
 ALL = 1000  # a lag and a window that leave nothing out
 
@@ -100,22 +100,6 @@ def test_a_units_end_decides_it() -> None:
         assert tuple(path[4:]) == likeliest(emission[4:], transition, transition[first[-1]])
 
 
-def test_a_lag_is_a_look_at_what_the_search_knows_by_then() -> None:
-    """The state of frame b with a lag of L is that of the best path through the frames up to b + L alone."""
-    model = hidden_markov_model(5, 8, 0.5)
-    chains, ends = chains_of([model]), ends_of(30, 11)
-    targets = np.repeat(np.random.default_rng(5).normal(0, 60, (30, 1)), 13, axis=1)
-    by_lag = {lag: decode(chains, [targets], [ends], 1, lag=lag, searched=ALL)[0] for lag in (0, 1, 2, 5, ALL)}
-    for lag in (0, 1, 2, 5):
-        for b in range(30):
-            known = min(b + lag, 11 if b <= 11 else 29) + 1
-            until = ends[:known].copy()
-            until[-1] = True
-            best = decode(chains, [targets[:known]], [until], 1, lag=ALL, searched=ALL)[0]
-            assert (by_lag[lag][b] == best[b]).all()
-    assert len({path.tobytes() for path in by_lag.values()}) > 2  # lags matter here
-
-
 def costs(chains: Chains, stride: int, target: np.ndarray, path: np.ndarray) -> List[float]:
     """The costs of each channel's path (T, C) for targets (T, C)."""
     found = []
@@ -150,83 +134,6 @@ def test_with_a_long_lag_units_are_searched_as_wholes(name: str, width: int) -> 
             np.testing.assert_array_equal(late[short], path[short])
 
 
-# ---- The rules of the exported tables, written out once more.
-
-
-def scalar_search(model: ExportedModel, channel: int, target: np.ndarray, ends: np.ndarray, lag: int) -> List[int]:
-    """The state of every frame of one channel, from the tables as they are stored, in whole numbers alone."""
-    stride, frames = model.search_stride, len(target)
-    mean = [int(v) for v in model.emission_mean[channel]]
-    states = len(mean)
-    width = min(SEARCHED, states)
-    scores: Optional[dict] = None
-    rows, spans, closed = [], [], []
-    begin = 0
-    for k in range(frames):
-        if k % stride != channel % stride and k != frames - 1:
-            continue
-        end = k
-        while end % stride != channel % stride:
-            end += 1  # the grid's, where the utterance ends before
-        x = int(target[min(max(end - stride + 1 + stride // 2, 0), frames - 1)])
-        below, above = [q for q in range(states) if mean[q] < x], [q for q in range(states) if mean[q] >= x]
-        is_above = above and (not below or mean[above[0]] - x < x - mean[below[-1]])
-        nearest = above[0] if is_above else below[-1]
-        first = min(max(nearest - width // 2, 0), states - width)
-        total, origin = {}, {}
-        best = min(scores, key=lambda q: (scores[q], q)) if scores else None
-        for q in range(first, first + width):
-            short = int(model.emission_gain[channel, q])
-            z = min(abs(x - mean[q]) * (16 + short % 16) // 2 ** (short // 16), 1023)
-            if scores is None:
-                enter, origin[q] = int(model.initial[channel, q]), None
-            else:
-                enter, origin[q] = 255, best
-                for edge in model.transitions[channel, q]:
-                    p, cost = (int(value) for value in edge)
-                    if p in scores and scores[p] + cost < enter:
-                        enter, origin[q] = scores[p] + cost, p
-            total[q] = enter + (z * z >> 7) + int(model.emission_cost[channel, q])
-        least = min(total.values())
-        scores = {q: min(value - least, 255) for q, value in total.items()}
-        winner = min(q for q, value in total.items() if value == least)
-        closed.append(bool(ends[begin : k + 1].any()))
-        if closed[-1]:
-            scores = {q: 0 if q == winner else 255 for q in scores}
-        rows.append((origin, winner))
-        spans.append(k + 1 - begin)
-        begin = k + 1
-    found: List[int] = []
-    block = [b for b, span in enumerate(spans) for _ in range(span)]
-    for frame, b in enumerate(block):
-        last = b
-        while last < block[min(frame + lag, frames - 1)] and not closed[last]:
-            last += 1
-        state = rows[last][1]
-        for later in range(last, b, -1):
-            state = rows[later][0][state]
-        found.append(state)
-    return found
-
-
-@pytest.mark.parametrize(("seed", "states", "lag"), [
-    (0, 12, 0), (2, 50, 0), (2, 9, 7),
-    *(pytest.param(*numbers, marks=pytest.mark.slow) for numbers in ((1, 30, 0), (3, 50, 3), (4, 20, 5), (5, 5, 3))),
-])  # fmt: skip
-def test_exported_decisions_are_those_of_the_rules(seed: int, states: int, lag: int) -> None:
-    """The library takes the same ones: a tie, a clamp, an edge from outside the window or a grid that differs would
-    show. Few states and coarse costs make ties frequent."""
-    model = quantise(random_model(seed, states=states), "model")
-    tables = ExportedTables(model)
-    for name in ("ordinary", "one frame each", "with zeros"):
-        target, _, ends = aims(tables, streams(9, tables.boundary, seed)[name])
-        target, ends = target[:90] // 64 * 64, ends[:90].copy()  # coarse, so that states tie
-        ends[-1] = True
-        path = tables.search(target, ends, lag)
-        for channel in range(13):
-            assert path[:, channel].tolist() == scalar_search(model, channel, target[:, channel], ends, lag)
-
-
 def test_a_step_by_hand() -> None:
     """Two states, at 0 and 100: the emission prefers the second by 30, the transition costs 40, then the search stays;
     then it prefers it by 50 more, and goes."""
@@ -259,31 +166,6 @@ def test_a_leap_goes_before_an_edge_that_costs_as_much() -> None:
         transition[:, 1, 2] = edge
         path = decode(Chains(mean, transition, initial, 255.0, emission), [targets], [ends_of(2)], 1, lag=1)[0]
         assert path[:, 0].tolist() == [origin, 2]
-
-
-# ---- Blocks and windows.
-
-
-def test_every_channel_has_a_grid_of_its_own() -> None:
-    """Channel 4 of stride 3 ends its blocks with the frames 1, 4, 7; its neighbours take their steps in other ticks."""
-    assert block_at(8, 3)[:, 4].tolist() == [0, 0, 1, 1, 1, 2, 2, 2]
-    assert block_at(8, 3)[:, 3].tolist() == [0, 1, 1, 1, 2, 2, 2, 3]
-    assert block_at(8, 3)[:, 5].tolist() == [0, 0, 0, 1, 1, 1, 2, 2]
-    assert block_ends(8, 3, 3).tolist() == [0, 3, 6, 7] and block_ends(8, 3, 4).tolist() == [1, 4, 7]
-    assert block_ends(1, 3, 2).tolist() == [0] and block_ends(5, 1, 7).tolist() == [0, 1, 2, 3, 4]
-    for stride in range(1, 9):
-        for frames in (1, 2, 7, 20):
-            for k in range(13):
-                ends = block_ends(frames, stride, k)
-                assert (np.diff(block_at(frames, stride)[:, k]) == np.isin(np.arange(frames - 1), ends)).all()
-
-
-def test_a_block_sees_its_middle() -> None:
-    """Of three frames the middle one, of two the later, also where the stream's ends cut the block."""
-    assert looked_at(8, 3, 4)[:, 3].tolist() == [0, 2, 5, 7]  # the first of -2 .. 0, the last of 7 .. 9
-    assert looked_at(8, 3, 3)[:, 4].tolist() == [0, 3, 6]
-    assert looked_at(6, 2, 3)[:, 1].tolist() == [1, 3, 5] and looked_at(6, 2, 4)[:, 0].tolist() == [0, 2, 4, 5]
-    assert looked_at(4, 1, 4)[:, 0].tolist() == [0, 1, 2, 3]
 
 
 def test_the_window_lies_around_the_nearest_state() -> None:
