@@ -85,28 +85,17 @@ def test_fewer_values_than_states():
     assert (book.variance > 0).all() and np.isfinite(book.log_transition).any(axis=0).all()
 
 
-def test_transition_counts_by_hand():
-    # Catches [to, from], counts across the ends of sequences, and rows that do not sum to 1.
-    paths = [np.array([0, 0, 3, 3, 0]), np.array([1, 2])]
+def test_counts_by_hand():
+    # Catches [to, from], counts across the ends of sequences, and rows that do not sum to 1; starts that are read from
+    # the wrong frame, and a state that no unit could start in.
     near = codebook.NEIGHBOUR_COUNT
     expected = np.array(
-        [
-            [1 + near, near, 0, 1],
-            [near, near, 1 + near, 0],
-            [0, near, near, near],
-            [1, 0, near, 1 + near],
-        ]
-    )
-    found = np.exp(codebook.transitions(paths, 4))
+        [[1 + near, near, 0, 1], [near, near, 1 + near, 0], [0, near, near, near], [1, 0, near, 1 + near]])
+    found = np.exp(codebook.transitions([np.array([0, 0, 3, 3, 0]), np.array([1, 2])], 4))
     np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), atol=1e-12)
-
-
-def test_initial_counts_by_hand():
-    # Catches starts that are read from the wrong frame, and a state that no unit could start in.
-    found = np.exp(codebook.initials([np.array([0, 2, 2, 1])], [np.array([1, 3])], 4))
     spread = codebook.INITIAL_COUNT * np.array([2, 2, 3, 1]) / 8
-    expected = (np.array([0, 1, 1, 0]) + spread) / (2 + codebook.INITIAL_COUNT)
-    np.testing.assert_allclose(found, expected)
+    found = np.exp(codebook.initials([np.array([0, 2, 2, 1])], [np.array([1, 3])], 4))
+    np.testing.assert_allclose(found, (np.array([0, 1, 1, 0]) + spread) / (2 + codebook.INITIAL_COUNT))
 
 
 def test_states_are_sorted_and_repeatable():

@@ -21,9 +21,9 @@ from labial.errors import DataError
 from labial.fit.avatar import Mesh
 from labial.fit.avatar import read as read_avatar
 from labial.fit.head import Head, read_table
-from labial.fit.kinds import kind_of, known, shapes_for
+from labial.fit.kinds import shapes_for
 from labial.fit.landmarks import read_head
-from labial.fit.meaning import bend, fap, judge, matrix, opening, shown
+from labial.fit.meaning import bend, judge, matrix, opening, shown
 from labial.fit.solve import Motion, read_sentences
 from labial.rig.animation import face, outputs
 from labial.rig.description import read
@@ -109,19 +109,6 @@ def test_an_avatar_is_fitted_and_drawn(tmp_path: Path, capsys: pytest.CaptureFix
     found = judge(head, matrix(head, named), spoken.frames, spoken.closures)
     assert 0.9 <= found.ratio <= 1.1 and found.opening <= 1.0, found.text()
     assert found.closed >= 0.98 and found.deepest >= -2.5, found.text()
-
-
-def test_sides_by_a_letter() -> None:
-    """mouthSmile_L, as Face Cap spells it, is ARKit's mouthSmileLeft; catches a rig that leaves such shapes out."""
-    vertices, triangles, shapes = made_head()
-    found: Dict[str, set] = {}
-    for end in ("Left", "_L"):
-        other = "Right" if end == "Left" else "_R"
-        spelled = {name.replace("Left", end).replace("Right", other): move for name, move in shapes.items()}
-        head = read_head([Mesh("face", vertices, triangles, spelled)], "a.glb", {}).head
-        assert kind_of(head) == "arkit"
-        found[end] = set(known(head, "arkit").values())
-    assert found["_L"] == found["Left"] and "mouthStretchRight" in found["_L"]
 
 
 def test_a_mouth_that_is_open_at_rest_is_told() -> None:
@@ -314,19 +301,6 @@ def test_arkit_on_a_real_head(head: Head, spoken: Motion) -> None:
     assert found.closed >= 0.98 and found.through == 0.0 and found.deepest >= -2.5, found.text()
     gap = opening(head, weights)
     assert mean_opening(gap, spoken, "uw") < 0.85 * mean_opening(gap, spoken, "aa")
-
-
-@needs_runtime
-def test_mouths_round(head: Head, spoken: Motion) -> None:
-    """Where the FAPs pull the corners in and push the lips out, as in "oo", the head is seen to do so."""
-    points = shown(head, matrix(head, outputs(face("arkit"), spoken.frames)))
-    width = (points["corner_left"] - points["corner_right"])[:, 0] - head.mw
-    meant = (fap(spoken.frames, 53) + fap(spoken.frames, 54)) * head.mw / 1024
-    round_ = meant < np.percentile(meant, 5)
-    assert meant[round_].mean() < -4 and 0.4 <= width[round_].mean() / meant[round_].mean() <= 1.25
-    forward = (points["outer_upper"] - head.rest["outer_upper"])[:, 2]
-    pushed = fap(spoken.frames, 17) > np.percentile(fap(spoken.frames, 17), 95)
-    assert forward[pushed].mean() > forward[~pushed].mean() + 1.0
 
 
 @pytest.mark.parametrize(("lines", "message"), [

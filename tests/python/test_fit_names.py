@@ -141,19 +141,6 @@ def test_names_that_would_be_the_same() -> None:
 
 
 @needs_runtime
-def test_clashing_names_are_fitted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Names that differ in capitals alone, or are refused: the comments have the file's own."""
-    shapes = {"mouthOpen": SHAPES["jawOpen"], "Lip_O": SHAPES["mouthPucker"],
-              "lip_o": SHAPES["mouthUpperUpLeft"] + SHAPES["mouthUpperUpRight"],
-              "Outputs": SHAPES["mouthSmileLeft"] + SHAPES["mouthSmileRight"]}
-    assert main(["fit", file_of(tmp_path / "a.glb", shapes), "-o", str(tmp_path / "a.toml"), "--no-figure"]) == 0
-    text = (tmp_path / "a.toml").read_text()
-    assert "4 of 4 shapes are used" in capsys.readouterr().out
-    assert "[output.Lip_O]\n" in text and "[output.lip_o_2]    # in the file: lip_o\n" in text
-    assert "[output.Outputs_2]    # in the file: Outputs\n" in text
-
-
-@needs_runtime
 def test_both_of_a_pair_have_their_name_beside_them(tmp_path: Path) -> None:
     text = fit([file_of(tmp_path / "a.glb", {spelled(name, "{base}.{S}"): move for name, move in SHAPES.items()})],
                {}, None, "a").text

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import subprocess
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Tuple
@@ -33,6 +32,7 @@ from labial.hearing.model import (
 )
 from labial.hearing.quantise import quantise, rounded
 from labial.tables.model import load as load_speech
+from models import archive, members_of
 from packages import CC, SOURCE
 
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wundef", "-Wcast-qual",
@@ -222,21 +222,14 @@ def test_integers_are_near_the_float_network(name: str) -> None:
                    class_weight=rounded(model.class_weight).astype(np.float32),
                    fap_weight=rounded(model.fap_weight).astype(np.float32))
     sound = voice(5.0)
+    for heard in (sound, np.clip(20 * sound.astype(int), -32768, 32767).astype(np.int16)):  # clipped, louder than it is
+        features = features_of(integer.log_energies(heard)) / 512
+        assert np.sqrt(np.mean((features.reshape(250, 48) - front.features(heard)) ** 2)) < 0.01
     wanted, found = network.hear(held, sound), integer.hear(quantise(model, "x"), sound)
     assert found.faps.shape == wanted.faps.shape == (250, 13)
     assert np.sqrt(np.mean((found.scores / 512 - wanted.scores) ** 2)) < 0.04
     assert np.sqrt(np.mean((found.faps - wanted.faps) ** 2)) < 0.01 * wanted.faps.std()
-    heard = features_of(integer.log_energies(sound)) / 512
-    assert np.sqrt(np.mean((heard.reshape(250, 48) - front.features(sound)) ** 2)) < 0.01
     assert emit.flash_bytes(quantise(model, "x")) < LARGEST[name] and plan.ahead == (12 if name == "ahead" else 4)
-
-
-def test_integers_hear_a_clipped_sound() -> None:
-    """Catches windows with both the least and the largest sample that are heard louder than they are."""
-    sound = np.clip(20 * voice(5.0).astype(int), -32768, 32767).astype(np.int16)
-    assert (sound == -32768).any() and (sound == 32767).any()
-    heard = features_of(integer.log_energies(sound)) / 512
-    assert np.sqrt(np.mean((heard.reshape(250, 48) - front.features(sound)) ** 2)) < 0.01
 
 
 def test_plans_and_classes() -> None:
@@ -440,12 +433,9 @@ def test_an_inconsistent_model_is_refused(changes: Any, message: str) -> None:
 def test_a_file_with_wrong_texts_is_refused(tmp_path: Path, change: Any, message: str) -> None:
     """Catches a file that is read as if its JSON could be trusted."""
     save(small(), tmp_path / "model.npz")
-    with zipfile.ZipFile(tmp_path / "model.npz") as archive:
-        members = {name: archive.read(name) for name in archive.namelist()}
+    members = members_of(tmp_path / "model.npz")
     members["model.json"] = json.dumps({**json.loads(members["model.json"]), **change}).encode()
-    with zipfile.ZipFile(tmp_path / "wrong.npz", "w") as archive:
-        for name, data in members.items():
-            archive.writestr(name, data)
+    (tmp_path / "wrong.npz").write_bytes(archive(members))
     with pytest.raises(ModelError, match=f"wrong.npz: not a model of hearing: .*{message}"):
         load(tmp_path / "wrong.npz")
 
@@ -454,17 +444,15 @@ def test_a_file_with_wrong_texts_is_refused(tmp_path: Path, change: Any, message
 def test_a_file_without_a_member_is_refused(tmp_path: Path, left_out: str) -> None:
     """Catches a member that is needed and not asked for."""
     save(small(), tmp_path / "model.npz")
-    with zipfile.ZipFile(tmp_path / "model.npz") as archive, zipfile.ZipFile(tmp_path / "less.npz", "w") as less:
-        for name in archive.namelist():
-            if name != left_out:
-                less.writestr(name, archive.read(name))
+    members = members_of(tmp_path / "model.npz")
+    del members[left_out]
+    (tmp_path / "less.npz").write_bytes(archive(members))
     with pytest.raises(ModelError, match=f"it holds no {left_out}"):
         load(tmp_path / "less.npz")
     (tmp_path / "text.npz").write_text("text")
-    with pytest.raises(ModelError, match="text.npz: not a model of hearing"):
-        load(tmp_path / "text.npz")
-    with pytest.raises(ModelError, match="none.npz: No such file"):
-        load(tmp_path / "none.npz")
+    for name, message in (("text", "not a model of hearing"), ("none", "No such file")):
+        with pytest.raises(ModelError, match=f"{name}.npz: {message}"):
+            load(tmp_path / f"{name}.npz")
 
 
 def test_tables_that_the_library_cannot_hold_are_refused(tmp_path: Path) -> None:

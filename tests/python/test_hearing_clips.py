@@ -348,14 +348,6 @@ def mouth(gaps: List[float]) -> np.ndarray:
     return frames
 
 
-def test_the_correlation_is_pearsons() -> None:
-    random = np.random.default_rng(0)
-    one, other = random.normal(size=(2, 50, 3))
-    found = measures.correlation(one, other)
-    assert found == pytest.approx([np.corrcoef(a, b)[0, 1] for a, b in zip(one.T, other.T)])
-    assert np.isnan(measures.correlation(one, np.ones((50, 3)))).all()
-
-
 def test_closures_by_hand() -> None:
     """Two frames before and after a run count, three do not; 72 FAP units touch, 73 do not."""
     classes = np.full(40, AA)

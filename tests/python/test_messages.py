@@ -26,7 +26,7 @@ from labial.corpus.services import SERVICES
 from labial.errors import LabialError
 from labial.files import limits
 from messages import SAMPLES
-from packages import CC, SOURCE, needs_runtime, run
+from packages import SOURCE, needs_runtime
 
 GO = {"word": "go", "start": 0.5, "end": 0.75}
 #: An object of Gradium's client has the fields of another service, without values, and no type.
@@ -288,45 +288,6 @@ def test_an_unknown_label_costs_little() -> None:
     """Its parts are compared only with names that begin as they do; with all others, too, it took 2,750 operations."""
     SPEECH.nearest("Ж0")  # names are listed once
     assert _operations(lambda: SPEECH.nearest(UNKNOWN, first="ipa")) < 1500
-
-
-@needs_runtime
-def test_an_unknown_label_costs_little_in_c(tmp_path: Path) -> None:
-    """The names are compared with all parts of a label in one pass: a label four times as long costs half as much more;
-    with a pass for each part it cost six times as much. Counts blocks of instructions."""
-    (tmp_path / "main.c").write_text("""\
-#include <stdio.h>
-#include <string.h>
-#include "speech_en.h"
-
-static unsigned long blocks;
-
-void __sanitizer_cov_trace_pc(void);
-void __sanitizer_cov_trace_pc(void)
-{
-    blocks++;
-}
-
-static unsigned long cost(const char *label)
-{
-    blocks = 0;
-    (void)labial_find_nearest(&speech_en_names, LABIAL_LABELS_AUTO, label, strlen(label), 0);
-    return blocks;
-}
-
-int main(int count, char **arguments)
-{
-    (void)count;
-    printf("%lu %lu\\n", cost(arguments[1]), cost(arguments[1] + 24));
-    return 0;
-}
-""", encoding="ascii")
-    options = [CC, "-O1", f"-I{SOURCE}/include", f"-I{SOURCE}/lib/models"]
-    run(*options, "-fsanitize-coverage=trace-pc", "-c", SOURCE / "lib/names.c", "-o", tmp_path / "names.o")
-    run(*options, tmp_path / "main.c", tmp_path / "names.o", SOURCE / "lib/models/speech_en_names.c", "-o",
-        tmp_path / "main")
-    longer, shorter = map(int, run(tmp_path / "main", UNKNOWN).split())
-    assert 1000 < shorter < longer < 3 * shorter, (shorter, longer)
 
 
 @pytest.mark.parametrize("name", {sample.service: name for name, sample in SAMPLES.items()}.values())

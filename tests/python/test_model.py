@@ -30,14 +30,6 @@ def build(folder: Path, *files: str) -> Path:
     return program
 
 
-def test_same_model_same_bytes(tmp_path: Path) -> None:
-    """An iteration order or a date in the output would show."""
-    for folder in ("a", "b"):
-        emit.write(quantise(random_model(1), "some_model"), tmp_path / folder, binary=True)
-    for path in sorted((tmp_path / "a").iterdir()):
-        assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes()
-
-
 @pytest.mark.parametrize("name", ["speech_en", "laughter_synthetic"])
 def test_bundled_tables_are_those_of_the_trained_models(tmp_path: Path, name: str) -> None:
     """Catches a model that was trained anew and not exported, and an exporter that changed under the tables."""

@@ -9,7 +9,7 @@ import sys
 import xml.etree.ElementTree as ET
 from array import array
 from pathlib import Path
-from typing import List
+from typing import Callable, List
 
 import numpy as np
 import pytest
@@ -92,35 +92,48 @@ def made_up(seed: int) -> str:
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_generated_table_is_the_float_rig(tmp_path: Path, seed: int) -> None:
-    """Would catch a wrong Q format, unit, sign or channel: within one unit of a rig in float64, with either product."""
-    (tmp_path / "made.toml").write_text(made_up(seed))
+def curved(seed: int) -> str:
+    """One whose outputs bend."""
+    rng = np.random.default_rng(seed)
+    text = f'unit = "{["us", "quarter_us", "pca9685", "plain"][seed % 4]}"\n'
+    for number in range(4):
+        values = np.sort(rng.choice(np.arange(900, 2200, 40), rng.integers(2, 10), replace=False))
+        openings = np.cumsum(rng.uniform(0.5, 3.0, len(values))) * rng.choice([-1, 1])
+        neutral, full = rng.permutation([values[0], values[-1]])
+        points = ", ".join(f"[{value}, {opening:.3f}]" for value, opening in zip(values, openings))
+        text += (f'[output.o{number}]\nfrom = "opening"\nneutral = {neutral}\nfull = {full}\nminimum = 900\n'
+                 f"maximum = 2200\ncurve = [{points}]\n")
+    return text
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("description", [made_up, curved])
+def test_generated_table_is_the_float_rig(tmp_path: Path, description: Callable[[int], str], seed: int) -> None:
+    """Would catch a wrong Q format, unit, sign or channel: within one unit of a rig in float64, or as many as a curve
+    is steep, with either product. Firmware is often C++: the table's initialisers must not narrow."""
+    (tmp_path / "made.toml").write_text(description(seed))
     rig = read(tmp_path / "made.toml", "made")
     table.write(rig, tmp_path)
-    frames = some_frames(seed)
-    wanted = expected(rig, convert(rig), frames)
+    frames, rows = some_frames(seed), convert(rig)
     found = native(tmp_path, "made", frames, f"-DLABIAL_NARROW_MULTIPLY={seed % 2}")
-    assert found.shape == wanted.shape and np.abs(found - wanted).max() <= 1.0
-    for column, output in zip(found.T, rig.outputs):  # in microseconds, no servo leaves what its owner wrote
-        assert column.min() >= output.minimum * rig.unit.scale - 1e-6
+    wanted = expected(rig, rows, frames)
+    assert found.shape == wanted.shape
+    for column, values, row, output in zip(found.T, wanted.T, rows, rig.outputs):
+        assert np.abs(column - values).max() <= 1.0 + max((slope for _, _, slope in row.curve), default=0) / 2**21
+        assert column.min() >= output.minimum * rig.unit.scale - 1e-6  # no servo leaves what its owner wrote
         assert column.max() <= output.maximum * rig.unit.scale + 1e-6
+    if CXX:
+        run(CXX, "-x", "c++", "-std=c++11", *warnings("c++"), f"-I{SOURCE / 'include'}", "-fsyntax-only",
+            tmp_path / "made.c")
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=[path.stem for path in EXAMPLES])
 def test_examples_are_what_the_command_writes(tmp_path: Path, path: Path) -> None:
-    """A description that was changed without its table would show, and a table that misses the float rig."""
+    """A description that was changed without its table would show."""
     name = path.stem
     assert main(["rig", str(path), "-o", str(tmp_path), "--no-figure"]) == 0
     for suffix in (".c", ".h"):
         assert (tmp_path / f"{name}{suffix}").read_bytes() == (EXAMPLES[path] / f"{name}{suffix}").read_bytes()
-    # Each frame is compared from rest, where a slew limit would hold the table back.
-    (tmp_path / "copy.toml").write_text(
-        "\n".join(line for line in path.read_text().splitlines() if not line.startswith("slew")))
-    rig = read(tmp_path / "copy.toml", name)
-    table.write(rig, tmp_path)
-    frames = some_frames(1)
-    assert np.abs(native(tmp_path, name, frames) - expected(rig, convert(rig), frames)).max() <= 1.0
 
 
 def test_float_rig_by_hand(tmp_path: Path) -> None:
@@ -189,28 +202,6 @@ def test_a_linkage_opens_evenly(tmp_path: Path) -> None:
                                      .replace("full = 1900", "full = 1400"))
     rig = read(tmp_path / "b.toml", "b")
     assert expected(rig, convert(rig), frames)[:, 0].tolist() == [5600, 7050, 7200, 6600, 6100]
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_generated_curves_are_the_float_rig(tmp_path: Path, seed: int) -> None:
-    """Within a unit of a rig in float64, or as many as the curve is steep."""
-    rng = np.random.default_rng(seed)
-    text = f'unit = "{["us", "quarter_us", "pca9685", "plain"][seed]}"\n'
-    for number in range(4):
-        values = np.sort(rng.choice(np.arange(900, 2200, 40), rng.integers(2, 10), replace=False))
-        openings = np.cumsum(rng.uniform(0.5, 3.0, len(values))) * rng.choice([-1, 1])
-        neutral, full = rng.permutation([values[0], values[-1]])
-        points = ", ".join(f"[{value}, {opening:.3f}]" for value, opening in zip(values, openings))
-        text += (f'[output.o{number}]\nfrom = "opening"\nneutral = {neutral}\nfull = {full}\nminimum = 900\n'
-                 f"maximum = 2200\ncurve = [{points}]\n")
-    (tmp_path / "made.toml").write_text(text)
-    rig = read(tmp_path / "made.toml", "made")
-    table.write(rig, tmp_path)
-    frames = some_frames(seed)
-    found = native(tmp_path, "made", frames, f"-DLABIAL_NARROW_MULTIPLY={seed % 2}")
-    rows = convert(rig)
-    for column, wanted, row in zip(found.T, expected(rig, rows, frames).T, rows):
-        assert np.abs(column - wanted).max() <= 1.0 + max(slope for _, _, slope in row.curve) / 2**20 / 2
 
 
 def test_degrees_are_pulses(tmp_path: Path) -> None:
@@ -342,7 +333,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (IN_DEGREES + "slew = 0.04\n", "output.jaw.slew: 0.04 is less than half a step of its values, microseconds"),
         (IN_DEGREES + "minimum = 70\n", "output.jaw.closed: 60 is not within 70 .. 100"),
         (IN_DEGREES + "curve = [[60, 0], [201, 9]]\n", "output.jaw.curve: 201 is not within -13.96 .. 199.39 degrees"),
-        (IN_DEGREES + "curve = [[60, 0], [60.02, 9], [100, 9.1]]\n", "between 60.02 and 100 the output would move"),
         (IN_DEGREES + "curve = [[60, 0], [60.1, 1e-2], [100, 9]]\n", "the points at 60 and 60.1 are too near"),
         ('unit = "degrees"\npulses = [1000]\n' + JAW, "pulses: is two pulses in microseconds"),
         ('unit = "degrees"\npulses = [2000, 1000]\n' + JAW, "pulses: 2000, 1000 are not two pulses"),
@@ -369,7 +359,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace('"opening"', "{ jaw = 1e9 }"), "output.jaw.from.jaw: 1e+09 is not within -1000 .. 1000"),
         (JAW.replace('"opening"', "{ jaw = 0 }"), "output.jaw.from: all weights are zero"),
         (JAW.replace('"opening"', "{ jaw = 1 }"), "output.jaw.reach: is missing"),
-        (JAW.replace('"opening"', '"fap16"'), "output.jaw.reach: is missing"),
         (JAW + "closed = 1399\n", None),
         (GAIN + "closed = 900\n", "output.jaw.closed: 900 is not within 1000 .. 2000"),
         (JAW.replace("neutral", "closed").replace("1400", "90"), "output.jaw.closed: 90 is not a servo's pulse"),
@@ -378,7 +367,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (WEIGHT + JAW.replace("1400", "0").replace("1900", "100"), "jaw.full: 100 is beyond 1: weights are 0 to 1"),
         (WEIGHT + JAW.replace("1400", "0").replace("1900", "1"), None),
         (JAW + "deadband = -1\n", "output.jaw.deadband: -1 is negative"),
-        (JAW + "deadband = 500\n", None),
         (JAW + "deadband = 501\n", "output.jaw.deadband: 501 is more than the travel from 1400 to 1900: the output"),
         (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
         (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
@@ -398,14 +386,11 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "acceleration = -1\n", "output.jaw.acceleration: -1 is not positive"),
         (JAW + "acceleration = 1e8\n", "output.jaw.acceleration: 100000000 microseconds is beyond 16777215"),
         (JAW + "curve = 3\n", "output.jaw.curve: is a list of 2 to 9 points [VALUE, OPENING]"),
-        (JAW + "curve = [[1400, 0]]\n", "output.jaw.curve: is a list of 2 to 9 points"),
         (JAW + "curve = [" + "[1400, 0]," * 10 + "]\n", "output.jaw.curve: is a list of 2 to 9 points"),
-        (JAW + "curve = [[1400, 0], 1900]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
         (JAW + "curve = [[1400, 0], [1900]]\n", "output.jaw.curve: point 2 is not [VALUE, OPENING]"),
         (JAW + 'curve = [[1400, 0], [1900, "x"]]\n', "output.jaw.curve: 'x' is not a number"),
         (JAW + "curve = [[140, 0], [1900, 9]]\n", "output.jaw.curve: 140 is not a servo's pulse, 400 .. 2600"),
         (JAW + "curve = [[1400, 0], [1600, 9], [1900, 8]]\n", "output.jaw.curve: from each value to the next larger"),
-        (JAW + "curve = [[1400, 0], [1400, 9], [1900, 12]]\n", "output.jaw.curve: from each value to the next larger"),
         (JAW + "curve = [[1500, 0], [1900, 9]]\n", "output.jaw.curve: neutral, 1400, is not within 1500 .. 1900"),
         (JAW + "curve = [[1400, 0], [1800, 9]]\n", "output.jaw.curve: full, 1900, is not within 1400 .. 1800"),
         (JAW + "curve = [[1400, 0], [1700, 0.1], [1900, 90]]\n", "the output would move 540 times as far as evenly"),
@@ -471,7 +456,7 @@ def test_names_that_c_cannot_use(tmp_path: Path, capsys: pytest.CaptureFixture) 
 
 
 @pytest.mark.parametrize("name", ["outputs", "jaw_curve", "jaw_visemes", "stdint", "Math", "linux", "Servo", "Arduino",
-                                  *sorted(OWN_TABLES)])
+                                  "speech_en"])
 def test_names_with_which_c_does_not_compile(tmp_path: Path, capsys: pytest.CaptureFixture, name: str) -> None:
     """Names of the file's other tables, of other headers, and of macros. A name is free where there is no table."""
     (tmp_path / f"{name}.toml").write_text(CURVED + "visemes = { TH = 3 }\n")

@@ -153,6 +153,9 @@ def test_built_in_rigs() -> None:
             assert all(isinstance(value, float) and 0 <= value <= 1 for value in values.values())
             assert values == labial.Rig(name).apply(row)  # what is kept under a name has no memory
     assert 0.1 < max(labial.Frame(0, row).rig("arkit")["jawOpen"] for row in motion) <= 1
+    open_wide = [700, 0, 0, -300, -500] + [0] * 8
+    values, expected = labial.Rig("arkit").apply(open_wide), arkit(np.array([open_wide], dtype=float))
+    assert all(abs(values[name] - expected[name][0]) <= 0.0011 for name in expected)
     servos = labial.Rig(SOURCE / "examples" / "faces" / "servos.toml")
     assert servos.unit == "pca9685" and servos.prescale == 121
 
@@ -215,15 +218,12 @@ def test_laughs_are_kept_for_render(tmp_path: Path, capsys: pytest.CaptureFixtur
                                        "silence; labial-say and labial.render() laugh\n")
 
 
-def chunks(name: str) -> list:
-    """A sample of Piper's as its own objects, whose numbers are NumPy's."""
-    return [SimpleNamespace(sample_rate=chunk["sample_rate"], audio_float_array=np.zeros(3), phoneme_alignments=[
-        SimpleNamespace(phoneme=item["phoneme"], num_samples=np.int64(item["num_samples"]))
-        for item in chunk["phoneme_alignments"]]) for chunk in SAMPLES[name].messages]
-
-
 def test_pipers_chunks_as_they_are() -> None:
-    found = labial.read_timings(chunks("piper"), source="piper")
+    """Its own objects, whose numbers are NumPy's."""
+    chunks = [SimpleNamespace(sample_rate=chunk["sample_rate"], audio_float_array=np.zeros(3), phoneme_alignments=[
+        SimpleNamespace(phoneme=item["phoneme"], num_samples=np.int64(item["num_samples"]))
+        for item in chunk["phoneme_alignments"]]) for chunk in SAMPLES["piper"].messages]
+    found = labial.read_timings(chunks, source="piper")
     assert found == labial.read_timings(SAMPLES["piper"].messages) and len(labial.render(found)) > 50
 
 
@@ -234,14 +234,11 @@ def test_piper_without_alignments_says_what_to_do() -> None:
         labial.read_timings([silent], source="piper")
 
 
-@pytest.mark.parametrize("label", ["^", "$", "_", ",", ".", "...", " "])
-def test_punctuation_is_silence(label: str) -> None:
+def test_punctuation_is_silence() -> None:
     """Piper's characters, given as they come."""
-    assert labial.render([("m", 80), (label, 200), ("m", 80)]) == labial.render([("m", 80), ("SIL", 200), ("m", 80)])
-    with pytest.raises(LabialError, match="no phoneme of this name"):
-        labial.render([("QQ", 80)])
-    with pytest.raises(LabialError, match="no phoneme of this name"):
-        labial.render([("", 80)])
+    expected = labial.render([("m", 80), ("SIL", 200), ("m", 80)])
+    for label in ("^", "$", "_", ",", ".", "...", " "):
+        assert labial.render([("m", 80), (label, 200), ("m", 80)]) == expected, label
 
 
 def test_the_type_is_the_same_without_numpy() -> None:
@@ -250,29 +247,6 @@ def test_the_type_is_the_same_without_numpy() -> None:
     motion = labial.render([("AA", 100)])
     assert done.stdout == f"{motion}\n" and isinstance(motion, list) and isinstance(motion[0], tuple)
     assert np.array(motion, "int16").shape == (5 + 12, 13)
-
-
-def test_weights_are_from_0_to_1() -> None:
-    """As in the page, in JSON and in the npm package."""
-    face, open_wide = labial.Rig("arkit"), [700, 0, 0, -300, -500] + [0] * 8
-    values = face.apply(open_wide)
-    assert face.unit == "weight" and values == face.values == labial.Frame(0, tuple(open_wide)).rig("arkit")
-    assert 0.3 < values["jawOpen"] <= 1 and all(type(value) is float for value in values.values())
-    expected = arkit(np.array([open_wide], dtype=float))
-    assert all(abs(values[name] - expected[name][0]) <= 0.0011 for name in expected)
-
-
-@pytest.mark.parametrize("line", ["neutral = 1e308", "neutral = 1500\nmaximum = -1e300", "neutral = 0\ngain = 1e200"])
-@pytest.mark.parametrize("unit", ["us", "plain", "weight", "counts", "pca9685"])
-def test_absurd_numbers_of_a_rig(tmp_path: Path, capsys: pytest.CaptureFixture, line: str, unit: str) -> None:
-    """One line that names the file and the key, no traceback."""
-    path = tmp_path / "face.toml"
-    clock = "clock = 1e6\n" if unit == "counts" else ""
-    path.write_text(f'unit = "{unit}"\n{clock}[output.jaw]\nfrom = "opening"\n{line}\n'
-                    + ("full = 1800\n" if "gain" not in line and "full" not in line else "minimum = 0\nmaximum = 1\n"))
-    assert main(["rig", str(path), "-o", str(tmp_path / "out"), "--no-figure"]) == 1
-    said = capsys.readouterr().err
-    assert said.startswith(f"labial: {path}: output.jaw.") and said.count("\n") == 1
 
 
 @pytest.mark.slow
@@ -297,7 +271,7 @@ def test_types_are_told_to_type_checkers() -> None:
     assert Path(labial.__file__).with_name("py.typed").is_file()
 
 
-# ---- Calls of the run-time within calls, by signal handlers and callbacks, and in forked proces ----------------------
+# ---- Calls of the run-time within calls, by signal handlers and callbacks, and in forked processes -------------------
 
 
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="signals and forks are those of Linux")

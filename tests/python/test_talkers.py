@@ -294,16 +294,6 @@ def test_training_and_evaluation_take_several_corpora(tmp_path, capsys) -> None:
     assert np.allclose(lips(b[0].frames)[:, 4], -(b[0].frames[:, 3] + b[0].frames[:, 4]))
 
 
-def test_grids_other_talkers() -> None:
-    # Catches what the corpora of this repository hold that the code does not take, and one person under two names.
-    corpora = [read_corpus(SOURCE / "export" / "corpora" / name) for name in ("grid_singles", "grid_more")]
-    assert [len(corpus) for corpus in corpora] == [9, 60]
-    talkers = [{item.source.talker for item in corpus} for corpus in corpora]
-    assert [len(each) for each in talkers] == [8, 6] and talkers[0] & talkers[1] == {"s2", "s4"}
-    for item in (item for corpus in corpora for item in corpus):
-        assert np.isfinite(item.frames).all() and item.source.left_out == {1, 2} and not item.source.silences
-
-
 # ---- Talkers as random effects ---------------------------------------------------------------------------------------
 
 
@@ -363,25 +353,6 @@ def test_a_channel_that_one_talker_teaches_is_fitted_as_without_talkers() -> Non
     np.testing.assert_allclose(shared.kernel[..., 1], alone.kernel[..., 1], atol=1e-8)
     np.testing.assert_allclose(own["b"].kernel[..., 1], alone.kernel[..., 1], atol=1e-8)
     assert np.abs(shared.kernel[..., 2] - alone.kernel[..., 2]).max() > 0.1
-
-
-def test_much_of_one_talker_says_no_more_than_one_person_can() -> None:
-    # Catches a talker who counts by his frames: here one speaks ten times as much as each of three others, who all
-    # stray the other way.
-    rng = np.random.default_rng(2)
-    items = [replace(episode(rng, 30), talker=name) for name in "a" * 30 + "bcd" * 3]
-    sign = {talker: 1.0 if talker == "a" else -1.0 for talker in "abcd"}
-    items = [replace(item, frames=np.outer(100.0 * sign[item.talker] * (item.phoneme_at() == 1), np.ones(13)))
-             for item in items]
-    asked = regression(items, tables(), CLASS, range(PHONEMES), 0, FPS, Penalties())
-    shared, own = fit_talkers(asked, items, choice_of(items), 1.0)
-    pooled = fit_kernels(asked, items, choice_of(items))
-
-    def at_its_middle(found) -> float:
-        return float((found.tables.shape[1] + found.kernel[1][list(found.lag).index(0)])[0])
-
-    assert at_its_middle(pooled) > 20.0 > at_its_middle(shared) and at_its_middle(own["a"]) > 50.0
-    assert at_its_middle(own["b"]) < -15.0
 
 
 def test_a_talker_who_counts_twice_is_two_talkers_alike() -> None:

@@ -16,7 +16,7 @@ from labial.reference import stream as carried_on
 from labial.reference.synthesis import synthesise
 from labial.reference.tables import FloatTables
 from labial.tables.followers import columns
-from labial.tables.model import Model, load, save
+from labial.tables.model import Model, save
 from labial.train import backed_off, kernels, pipeline, train
 from labial.train.codebook import features, lbg
 from labial.train.pipeline import _unit_ends, codebook_tables, train_channel
@@ -67,16 +67,6 @@ def saved(model: Model) -> bytes:
     buffer = io.BytesIO()
     save(model, buffer)
     return buffer.getvalue()
-
-
-@pytest.mark.parametrize("method", ["paper", "labial"])
-@pytest.mark.slow
-def test_the_same_bytes_for_any_number_of_jobs(corpus, models, method, tmp_path):
-    # Catches random seeds that are not fixed, results in the order they arrive, times or paths kept in the model.
-    once, again = models[method], train(corpus, method=method, jobs=2, symmetric=False, **OPTIONS)
-    assert saved(once) == saved(again)
-    save(once, tmp_path / "model.npz")
-    assert saved(load(tmp_path / "model.npz")) == saved(once)
 
 
 def motion_error(model: Model, item: Episode) -> float:

@@ -19,10 +19,9 @@ import pytest
 import labial
 from labial.core.words import OwnWords
 from labial.integrations.lips import Lips
-from messages import SAMPLES
 from oracle import Plan, rested, times
 from packages import needs_runtime, run
-from regenerate_voices import SOUNDS, WORDS
+from regenerate_voices import WORDS
 
 pytestmark = needs_runtime
 
@@ -43,51 +42,6 @@ def motion(timings: Iterable[Tuple[str, float]], count: int) -> List[Tuple[int, 
 
 def said(words: Sequence[Tuple[str, float, float]]) -> List[Tuple[str, int]]:
     return labial.word_timings([(text, round(start * 1000), round(end * 1000)) for text, start, end in words])
-
-
-def test_frames_tell_their_sounds() -> None:
-    """In the order of VISEMES, and to faces that follow them."""
-    with labial.Voice() as voice:
-        voice.push("TH", 0.2, 0.3)
-        voice.push("M", 0.5, 0.6)
-        frames = voice.played(0.0) + [frame for number in range(1, 40) for frame in voice.played(number / 50)]
-    assert frames[12].visemes[3] > 100 and frames[27].visemes[1] > 100  # thin, mama
-    assert frames[12].rig("oculus")["TH"] > 0.7 > 0.1 > labial.Frame(12, frames[12].faps).rig("oculus")["TH"]
-
-
-@pytest.mark.parametrize("lead, exact", [(0.3, True), (0.1, False)])
-def test_how_early_a_phoneme_must_be_known(lead: float, exact: bool) -> None:
-    """The 300 ms of docs/streams.md: so long before what precedes it is heard, which may be a pause."""
-    with labial.Voice() as voice:
-        frames = []
-        before = [0.0, *(end if end < after else start
-                         for (_, start, end), (_, after, _) in zip(SOUNDS, SOUNDS[1:]))]
-        for number in range(100):
-            for sound, begins in zip(SOUNDS, before):
-                if max(0, math.ceil((begins - lead) * 50 - 1e-6)) == number:
-                    voice.push(*sound)
-            frames += [frame.faps for frame in voice.played(number / 50)]
-    with labial.Voice() as voice:
-        for sound in SOUNDS:
-            voice.push(*sound)
-        assert (frames == played(voice, 0, 1.98)) == exact
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_in_time_is_what_render_makes(seed: int) -> None:
-    """Up to 150 ms before the end of the last sound, bit for bit, and not to the end, as docs/streams.md says."""
-    numbers = random.Random(seed)
-    sounds = [name for name in labial.speech_en.phonemes if name != "SIL"]
-    timings = [(numbers.choice(sounds), numbers.randrange(20, 300)) for _ in range(20)]
-    with labial.Voice() as voice:
-        moment = 0
-        for label, milliseconds in timings:
-            voice.push(label, moment / 1000, (moment + milliseconds) / 1000)
-            moment += milliseconds
-        frames = played(voice, 0, moment / 1000)
-    exact = math.ceil((moment - 150) / 20)
-    wanted = labial.render(timings)
-    assert frames[:exact] == wanted[:exact] and frames != wanted[: len(frames)]
 
 
 def test_times_that_seem_to_be_milliseconds_are_doubted() -> None:
@@ -220,23 +174,6 @@ def test_messages_that_tell_nothing() -> None:
         voice.feed({"audio": "AAAA", "sequence": 1})
         voice.feed(json.dumps([{"word": "by", "start": 0.6, "end": 0.9}]))
         assert played(voice, 0, 1.4) == motion(said([("hum", 0.1, 0.5), ("by", 0.6, 0.9)]), 71)
-
-
-def test_pipers_chunks_are_read_as_they_are() -> None:
-    """Objects with Piper's attributes, whose numbers may be numpy's."""
-    class Thing:
-        def __init__(self, **fields: Any) -> None:
-            self.__dict__.update(fields)
-
-    chunks = SAMPLES["piper"].messages
-    frames = []
-    for convert in (dict, lambda chunk: Thing(sample_rate=chunk["sample_rate"], phoneme_alignments=[
-            Thing(**item) for item in chunk["phoneme_alignments"]])):
-        with labial.Voice() as voice:
-            for chunk in chunks:
-                voice.feed(convert(chunk))
-            frames.append(played(voice, 0, 3))
-    assert frames[0] == frames[1] and max(frame[0] for frame in frames[0]) > 100
 
 
 @pytest.mark.parametrize("form, message, problem", [
@@ -377,47 +314,6 @@ def test_characters_of_another_language() -> None:
         voice.feed({"alignment": {"characters": list(text), "character_start_times_seconds": [s / 1000 for s in starts],
                                   "character_end_times_seconds": [s / 1000 + 0.1 for s in starts]}})
         assert played(voice, 0, 2) == motion(timings, 101)
-
-
-def test_words_that_end_where_they_begin_are_said() -> None:
-    """As those whose end is not known; also the last one, behind whose beginning nothing was told."""
-    words = [{"word": "Hello", "start": 0.5, "end": 0.5}, {"word": "world!", "start": 0.9, "end": 0.9}]
-    known = labial.word_timings([("Hello", 500, None), ("world!", 900, None)])
-    assert labial.read_timings(words) == known
-    with labial.Voice() as voice:
-        for word in words:
-            voice.say(word["word"], word["start"], word["end"])
-        voice.finish()
-        end = sum(length for _, length in known) / 1000
-        assert played(voice, 0, end) == motion(known, round(50 * end) + 1)
-        assert not voice.done
-        played(voice, end, end + 0.6)
-        assert voice.done
-
-
-@pytest.mark.parametrize("late", [3.0, 5.0, 6.3, 7.0])
-@pytest.mark.parametrize("first", [0.0, 1.2], ids=["the first", "one between others"])
-def test_a_message_that_comes_late_moves_nothing(late: float, first: float) -> None:
-    """However long its time is over: nothing was told of that."""
-
-    def message(text: str, start: float) -> Dict[str, Any]:
-        starts = [round(start + 0.05 * k, 2) for k in range(len(text))]
-        return {"alignment": {"characters": list(text), "character_start_times_seconds": starts,
-                              "character_end_times_seconds": [round(start + 0.05, 2) for start in starts]}}
-
-    before = [message("Maybe people ", 0.1)] if first else []
-    others = [message("prefer my map ", 2.8), message("Then we went home ", 4.6)]
-    found = []
-    for moment in (0.0, late):
-        with labial.Voice("elevenlabs") as voice:
-            for other in [*before, *others]:
-                voice.feed(other)
-            shown = played(voice, 0, moment)
-            voice.feed(message("because Bob and Pam ", 1.6))
-            voice.finish()
-            shown += played(voice, moment, 12)
-            found.append(max(k for k, frame in enumerate(shown) if any(frame)))
-    assert abs(found[1] - found[0]) <= 1
 
 
 @pytest.mark.parametrize("options", [{"language": "de"}, {"numbers": True}])

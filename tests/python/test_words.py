@@ -95,13 +95,6 @@ def test_alignment_of_a_worked_example() -> None:
     assert alignment.align([entry("am", "AE T")], loose) == [(2, 31)]
 
 
-def test_words_that_everyone_says_are_read_right(trained: tables.WordTables) -> None:
-    """Also those in which a letter sounds as in no other word, such as the f of "of"."""
-    said = {"of": "AH V", "could've": "K UH D AH V", "women's": "W IH M AH N Z", "recipe": "R EH S AH P IY",
-            "laughs": "L AE F S", "genuine": "JH EH N Y AH W AH N", "february": "F EH B Y AH W EH R IY"}  # fmt: skip
-    assert {word: tables.names(tables.phonemes(trained, word)) for word in said} == said
-
-
 def test_questions_of_all_letters_at_once_are_those_of_one(trained: tables.WordTables) -> None:
     """The answers that trees are grown by are those that they are read by."""
     asked = Asked(trained.sounds)

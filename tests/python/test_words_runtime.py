@@ -179,13 +179,6 @@ def test_long_texts_are_not_cut(caplog: pytest.LogCaptureFixture) -> None:
     assert [message[40:] for message in caplog.messages] == [" has 120 phonemes: the lips move for the first 96"]
 
 
-def test_any_text_is_read() -> None:
-    """Half surrogates, NUL and characters of every plane."""
-    timings = labial.word_timings([("\ud800", 0, 100), ("a\0b", 100, 200), ("\U0010ffff", 200, 300), ("", 300, 400)])
-    assert total(timings) == 200
-    assert labial.word_timings([("日本語", 0, 600)]) == [("AH", 200), ("L", 200), ("AH", 200)]
-
-
 @needs_espeak
 def test_other_languages_are_espeaks() -> None:
     """German, Russian and British words, as phonemes of English; own words and silent ones come first."""
@@ -585,29 +578,3 @@ def test_malformed_messages(tmp_path: Path) -> None:
     cases = [(None, text if isinstance(text, str) else json.dumps(text)) for _, text in MALFORMED]
     cases += [(name, json.dumps(text)) for name in NAMES for text in ({}, [], [1], None, [[]], {"alignment": 3})]
     assert_alike(tmp_path, cases)
-
-
-MESSAGES = """
-const words = await labial.words();
-answer(given.map(([format, messages]) => {
-    const reader = words.reader({ format });
-    return messages.map((message) => reader.read(message));
-}));
-"""
-
-
-def test_messages_one_by_one(tmp_path: Path) -> None:
-    """Would catch times of a message that do not follow those of the one before: together they are what read() has."""
-    names = {"elevenlabs_ws": "characters", "elevenlabs": "characters", "cartesia": "words", "rime": "words",
-             "cartesia_phonemes": "phonemes", "hume": "phonemes", "inworld": "phonemes", "minimax": "words",
-             "words": "words"}  # fmt: skip
-    given = [["auto", SAMPLES[name].messages] for name in names]
-    for name, kind, found in zip(names, names.values(), answered(MESSAGES, given, tmp_path)):
-        items = [item for one in found for item in one[kind]]
-        (tmp_path / "a.json").write_text(SAMPLES[name].text, encoding="utf-8")
-        wanted = read_timings(tmp_path / "a.json")
-        if kind == "phonemes":
-            assert [item["text"] for item in items] == [one.label for one in wanted], name
-            continue
-        spoken = "".join(item["text"] for item in items).replace(" ", "")
-        assert spoken.rstrip(".") == "Maybe,go" and items[0]["start"] == 0.1 and items[-1]["end"] == 1.0, name
