@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import json
 import shutil
-import wave
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List
 
@@ -18,7 +17,7 @@ from browser import CHROMIUM, REASON, THREE_D, Browser, Page, served
 from labial.__main__ import main
 from labial.rig import description_of
 from messages import answers
-from models import lab
+from models import lab, write_wav
 from npm import TOOLS_MISSING, install, package, tools
 from packages import SOURCE
 from pages import parse
@@ -92,9 +91,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[[str], s
     (folder / "avatar.glb").write_bytes(avatar())
     (folder / "avatar.vrm").write_bytes(vrm())
     (folder / "hello.lab").write_text(lab(PHONEMES))
-    with wave.open(str(folder / "hello.wav"), "wb") as sound:
-        sound.setparams((1, 2, 16000, 0, "NONE", ""))
-        sound.writeframes((3000 * np.sin(np.arange(16000 * SECONDS) / 8)).astype("<i2").tobytes())
+    write_wav(folder / "hello.wav", 3000 * np.sin(np.arange(16000 * SECONDS) / 8))
     imports = {"three": "three/build/three.module.js", "three/addons/": "three/examples/jsm/",
                "@pixiv/three-vrm": "@pixiv/three-vrm/lib/three-vrm.module.js", "labial": "labial/index.js",
                "labial/": "labial/", "labial-words": "labial-words/index.js",

@@ -7,7 +7,6 @@ import io
 import os
 import subprocess
 import warnings
-import wave
 from pathlib import Path
 from typing import List, Sequence, Tuple
 
@@ -24,12 +23,9 @@ from labial.corpus.phonesets import ARPABET  # noqa: E402
 from labial.errors import DataError, LabialError  # noqa: E402
 from labial.sound import align as module  # noqa: E402
 from labial.sound.align import phrases_of, pronunciations  # noqa: E402
-from labial.sound.recogniser import (  # noqa: E402
-    LONGEST_CLOSURE,
-    Recogniser,  # noqa: E402
-    with_silences,
-)
+from labial.sound.recogniser import LONGEST_CLOSURE, Recogniser, with_silences  # noqa: E402
 from labial.sound.samples import RATE, prepared, read_sound, silences  # noqa: E402
+from models import write_wav  # noqa: E402
 from test_speak import speak  # noqa: E402
 
 #: What is spoken here; the first in sounds that show on lips, the second with stops behind pauses and between vowels.
@@ -180,9 +176,7 @@ def test_bad_files(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
 
 
 def test_text_file_and_words_that_are_guessed(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    with wave.open(str(tmp_path / "a.wav"), "wb") as out:
-        out.setparams((1, 2, RATE, 0, "NONE", ""))
-        out.writeframes(bytes(2 * RATE))
+    write_wav(tmp_path / "a.wav", np.zeros(RATE), RATE)
     (tmp_path / "a.txt").write_text("\ufeffZyxxo\n", encoding="utf-8")
     assert main(["align", str(tmp_path / "a.wav"), "--text-file", str(tmp_path / "a.txt")]) in (0, 1)
     assert "spelt: zyxxo" in capsys.readouterr().err
@@ -236,9 +230,13 @@ def test_no_gap_whatever_the_silences() -> None:
         assert all(a.end == b.start and a.end > a.start for a, b in zip(found, found[1:]))
 
 
-def test_words_of_a_text() -> None:
+def test_phrases_of_a_text() -> None:
+    """At marks, in even parts where they are long."""
     assert phrases_of("Don\u2019t 'go', Zoë \u2014 my well-known friend!") == [
         ["don't", "go'"], ["zoe", "my", "well", "known", "friend"]]  # fmt: skip
+    text = "Well, here we are now:\nthe quick brown fox jumps over the lazy dog. It's ten"
+    assert phrases_of(text) == [["well"], ["here", "we", "are", "now"], ["the", "quick", "brown", "fox"],
+                                ["jumps", "over", "the", "lazy", "dog"], ["it's", "ten"]]
     with pytest.raises(LabialError, match="'42'"):
         phrases_of("for 42 years")
 
@@ -294,13 +292,6 @@ def test_what_the_text_lacks_is_heard(tmp_path: Path) -> None:
         assert correlation(say(tmp_path / "a.lab"), true) >= least, text
         lacks = not all(item in text for item in TEXTS)
         assert (min(item.confidence for item in found.stretches) < 0.6) == lacks, text
-
-
-def test_phrases_of_a_text() -> None:
-    """At marks, in even parts where they are long."""
-    text = "Well, here we are now:\nthe quick brown fox jumps over the lazy dog. It's ten"
-    assert phrases_of(text) == [["well"], ["here", "we", "are", "now"], ["the", "quick", "brown", "fox"],
-                                ["jumps", "over", "the", "lazy", "dog"], ["it's", "ten"]]
 
 
 def test_confidence_is_told(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Iterator, List, NamedTuple, Sequence, Tuple
+from typing import Callable, Iterator, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 import pytest
@@ -328,7 +328,8 @@ def closures(lines: Sequence[Shown], spoken: Said, start: int) -> int:
 def test_a_toy_shows_what_is_heard(toy: Path, server: Tuple[int, int]) -> None:
     """Catches lips that are not in step with the samples, in one utterance and in the next; lips that are open in p, b,
     m; and pulses that are not the rig's."""
-    lines = play(toy, server[0], "say Mama may pop a bubble.\nplay 60000\nsay Bob may be happy.\nplay 60000\n", "jitter")
+    lines = play(toy, server[0], "say Mama may pop a bubble.\nplay 60000\nsay Bob may be happy.\nplay 60000\n",
+                 "jitter")
     first, second = said("Mama may pop a bubble."), said("Bob may be happy.")
     blocks = [line.sample for line in lines]
     start = -(-round(sum(length for _, length in first.timings)) // 60) * 60 * RATE_OF_VOICE // 1000
@@ -412,30 +413,18 @@ def test_a_port_that_is_taken() -> None:
     assert err.lower() == f"server: port {port} of 127.0.0.1: address already in use\n"
 
 
-class Messages:
-    """The kinds of the messages of a server."""
+@contextlib.contextmanager
+def connected(port: int) -> Iterator[Tuple[socket.socket, Callable[[], bytes]]]:
+    """A connection, and what takes the kind of the server's next message: nothing at its end."""
+    with socket.create_connection(("127.0.0.1", port), timeout=60) as toy, toy.makefile("rb") as stream:
+        def take() -> bytes:
+            with contextlib.suppress(ConnectionResetError):
+                if len(head := stream.read(3)) == 3:
+                    stream.read(struct.unpack("<H", head[1:])[0])
+                    return head[:1]
+            return b""
 
-    def __init__(self, connection: socket.socket) -> None:
-        self._connection = connection
-
-    def take(self, seconds: float) -> bytes:
-        """The next one, at most so many seconds later; nothing at the end of the connection."""
-        self._connection.settimeout(seconds)
-        head = self._bytes(3)
-        self._bytes(struct.unpack("<H", head[1:])[0] if head else 0)
-        return head[:1]
-
-    def _bytes(self, size: int) -> bytes:
-        data = b""
-        while len(data) < size:
-            try:
-                got = self._connection.recv(size - len(data))
-            except ConnectionResetError:
-                got = b""
-            if not got:
-                return b""
-            data += got
-        return data
+        yield toy, take
 
 
 @needs_flite
@@ -447,16 +436,15 @@ def test_connections_do_not_wait_for_each_other(tmp_path: Path) -> None:
     (tmp_path / "flite").chmod(0o755)
     with serving("--ahead", "0.2", PATH=f"{tmp_path}{os.pathsep}{os.environ['PATH']}") as (_, port), \
             contextlib.ExitStack() as toys:
-        first = toys.enter_context(socket.create_connection(("127.0.0.1", port)))
+        first, take = toys.enter_context(connected(port))
         first.sendall(b"say " + 5 * b"Mama may pop a bubble, and Bob may be happy about it. " + b"\n")
-        messages = Messages(first)
-        while messages.take(30.0) != b"A":
+        while take() != b"A":
             pass
         (tmp_path / "slow").touch()
-        others = [toys.enter_context(socket.create_connection(("127.0.0.1", port))) for _ in range(60)]
-        assert [Messages(other).take(30.0) for other in others] == [b"R"] * 60
-        others[0].sendall(b"say a\n")
-        sound = [time.monotonic() for _ in range(30) if messages.take(30.0) == b"A"]
+        others = [toys.enter_context(connected(port)) for _ in range(60)]
+        assert [take_of_other() for _, take_of_other in others] == [b"R"] * 60
+        others[0][0].sendall(b"say a\n")
+        sound = [time.monotonic() for _ in range(30) if take() == b"A"]
         assert len(sound) > 20 and max(after - before for before, after in zip(sound, sound[1:])) < 2.5
 
 
@@ -465,27 +453,21 @@ def test_connections_do_not_wait_for_each_other(tmp_path: Path) -> None:
 def test_limits_of_a_server() -> None:
     """Catches connections and silent toys that are kept without end, lines that are, and an empty line that ends."""
     with serving("--connections", "2", "--idle", "1") as (process, port):
-        with contextlib.ExitStack() as toys:
-            speaking, silent = (toys.enter_context(socket.create_connection(("127.0.0.1", port))) for _ in range(2))
-            spoken = Messages(speaking)
-            assert [spoken.take(30.0), Messages(silent).take(30.0)] == [b"R", b"R"]
-            with socket.create_connection(("127.0.0.1", port)) as third:
-                assert Messages(third).take(30.0) == b""
+        with connected(port) as (speaking, take), connected(port) as (_, take_of_silent):
+            assert [take(), take_of_silent()] == [b"R", b"R"]
+            with connected(port) as (_, take_of_third):
+                assert take_of_third() == b""
             speaking.sendall(b"\nsay Hello there, how are you today, and what do you say?\n")
-            assert [spoken.take(30.0) for _ in range(20)].count(b"A") > 10, "it is not silent while it speaks"
-            while kind := spoken.take(30.0):
-                last = kind
-            assert last == b"E", "and is hung up on when it has been"
-        with socket.create_connection(("127.0.0.1", port)) as long:
+            assert [take() for _ in range(20)].count(b"A") > 10, "it is not silent while it speaks"
+            assert list(iter(take, b""))[-1] == b"E", "and is hung up on when it has been"
+        with connected(port) as (long, take):
             long.sendall(b"say " + b"a" * 5000)
-            kinds = Messages(long)
-            while kinds.take(30.0):
-                pass
-        with socket.create_connection(("127.0.0.1", port)) as many:
+            assert list(iter(take, b""))[0] == b"R"
+        with connected(port) as (many, take):
             many.sendall(b"say a\n" * 20)
-            kinds, ends = Messages(many), 0
+            ends = 0
             while ends < 20:  # also of what it does not speak
-                kind = kinds.take(60.0)
+                kind = take()
                 assert kind
                 ends += kind == b"E"
         process.kill()

@@ -13,7 +13,6 @@ from labial.corpus.folder import HEADER, read_frames
 from labial.corpus.iemocap import align_head, read_iemocap
 from labial.errors import DataError, LabialError
 from labial.files.faps import FAP_NAMES
-from packages import SOURCE
 
 NAMES = (
     "CH1 CH2 CH3 FH1 FH2 FH3 LC1 LC2 LC3 LC4 LC5 LC6 LC7 LC8 RC1 RC2 RC3 RC4 RC5 RC6 RC7 RC8 LLID RLID MH MNOSE LNSTRL "
@@ -70,11 +69,6 @@ def write(root, utterance, markers, phseg=PHSEG):
     return motion / f"{utterance}.txt"
 
 
-def level(head):
-    """Frames' rotation of the reference face leaves the sizes of moves within this tolerance, FAP units."""
-    return 1.5 if head else 1e-2
-
-
 @pytest.mark.parametrize("head", [False, True], ids=["still", "moving"])
 @pytest.mark.parametrize("name", FAP_NAMES)
 def test_each_move_has_its_channel_sign_and_size(tmp_path, name, head):
@@ -82,7 +76,7 @@ def test_each_move_has_its_channel_sign_and_size(tmp_path, name, head):
     write(tmp_path, "Ses01F_impro01_F000", face([MOVES[name]], head))
     (episode,) = read_iemocap(tmp_path)
     channel = FAP_NAMES.index(name)
-    tolerance = level(head)
+    tolerance = 1.5 if head else 1e-2  # what the rotation of the reference face leaves, FAP units
     assert abs(episode.frames[STILL]).max() < tolerance
     assert abs(episode.frames[~STILL, channel] - 102.4).max() < tolerance
     assert abs(np.delete(episode.frames[~STILL], channel, axis=1)).max() < tolerance
@@ -115,9 +109,8 @@ def test_neutral_is_the_median_of_silence(tmp_path):
 def test_short_gaps_are_bridged_and_lost_head_markers_do_without(tmp_path):
     """Catches NaN that reaches the frames, and frames refused because one of the eight head markers is gone."""
     markers = face([MOVES["open_jaw"]])
-    markers[150:170, NAMES.index("CH2")] = np.nan
-    markers[:5, NAMES.index("Mou3")] = np.nan
-    markers[60:200, NAMES.index("LHD")] = np.nan
+    for begin, end, name in ((150, 170, "CH2"), (0, 5, "Mou3"), (60, 200, "LHD")):
+        markers[begin:end, NAMES.index(name)] = np.nan
     write(tmp_path, "Ses01F_impro01_F000", markers)
     (episode,) = read_iemocap(tmp_path)
     assert np.isfinite(episode.frames).all() and abs(episode.frames[~STILL, 0] - 102.4).max() < 5
@@ -280,21 +273,24 @@ def test_episodes_are_sorted_and_strangers_ignored(tmp_path):
     assert [s.label for s in episodes[0].segments] == ["HH", "AH"]
 
 
-@pytest.mark.parametrize("lost", ["a.csv", "a.lab"])
-def test_half_an_episode_is_an_error(tmp_path, lost):
-    """Catches episodes that vanish because one of their files is missing."""
+@pytest.mark.parametrize(("name", "text", "start", "words"), [
+    ("a.csv", None, "a.lab", "a.csv"), ("a.lab", None, "a.csv", "a.lab"), ("a.TextGrid", "x", "a.lab", "a.TextGrid"),
+    # Timings in milliseconds or of another episode, which would train on a held mouth; motion in milliseconds.
+    ("a.lab", "0 0.5 HH\n0.5 90 AH0\n", "a.lab", "motion"), ("a.csv", frames(step=100), "a.csv", "times in seconds?"),
+    ("a.csv", frames().rstrip("\n")[:-1] + "99999\n", "a.csv:11", "beyond 10000 FAP units"),
+])  # fmt: skip
+def test_files_that_do_not_go_together(tmp_path, name, text, start, words):
+    """Catches episodes that vanish because one of their files is missing, a silent choice between two timings, an error
+    that names the other file, or none after a training."""
     fill(tmp_path, ["a", "b"])
-    (tmp_path / lost).unlink()
-    fails(lambda: read_corpus(tmp_path), tmp_path / ("a.lab" if lost == "a.csv" else "a.csv"), lost)
+    (tmp_path / name).unlink() if text is None else (tmp_path / name).write_text(text)
+    fails(lambda: read_corpus(tmp_path), tmp_path / start, words)
 
 
-def test_two_timings_or_none_or_no_folder(tmp_path):
-    """Catches a silent choice between two timings, and an empty corpus that trains on nothing."""
+def test_folders_that_are_no_corpus(tmp_path):
     fails(lambda: read_corpus(tmp_path), tmp_path, "no episodes")
     fails(lambda: read_corpus(tmp_path / "x"), tmp_path / "x", "no such folder")
     fill(tmp_path, ["a"])
-    (tmp_path / "a.TextGrid").write_text("x")
-    fails(lambda: read_corpus(tmp_path), tmp_path / "a.lab", "a.TextGrid")
     with pytest.raises(LabialError):
         read_corpus(tmp_path, "song")
 
@@ -310,24 +306,6 @@ def test_malformed_frames_name_the_line(tmp_path, text, line):
     path = tmp_path / "a.csv"
     path.write_text(text)
     fails(lambda: read_frames(path), f"{path}:{line}" if line else path)
-
-
-def test_files_that_do_not_go_together(tmp_path):
-    """Catches timings in milliseconds, or of another episode, which would train on a held mouth."""
-    fill(tmp_path, ["a"])
-    (tmp_path / "a.lab").write_text("0 0.5 HH\n0.5 90 AH0\n")
-    fails(lambda: read_corpus(tmp_path), tmp_path / "a.lab", "motion")
-
-
-def test_times_in_milliseconds_and_glitches_are_of_the_motion(tmp_path):
-    """Catches an error that names the other file, or none after a training."""
-    fill(tmp_path, ["a"])
-    good = (tmp_path / "a.csv").read_text()
-    rows = [row.partition(",") for row in good.splitlines()[1:]]
-    (tmp_path / "a.csv").write_text("\n".join([HEADER, *(f"{1000 * float(t):g},{rest}" for t, _, rest in rows)]))
-    fails(lambda: read_corpus(tmp_path), tmp_path / "a.csv", "are the times in seconds?")
-    (tmp_path / "a.csv").write_text(good.rstrip("\n").rpartition(",")[0] + ",99999\n")
-    fails(lambda: read_corpus(tmp_path), f"{tmp_path / 'a.csv'}:{1 + len(rows)}", "beyond 10000 FAP units")
 
 
 def test_the_tier_of_an_unknown_label_is_named(tmp_path):
@@ -386,12 +364,3 @@ def test_archives_that_cannot_be_read(tmp_path, monkeypatch):
     monkeypatch.undo()
     archive.write_bytes(archive.read_bytes()[:200])
     fails(lambda: read_corpus(tmp_path), archive, "damaged")
-
-
-@pytest.mark.slow
-def test_grid():
-    """Catches whatever a corpus of real size and origin holds that the small files above do not."""
-    episodes = read_corpus(SOURCE / "export" / "corpora" / "grid_s1")
-    assert len(episodes) == 803 and sum(len(e.segments) for e in episodes) > 10000
-    assert all(np.isfinite(e.frames).all() for e in episodes)
-    assert all(segment.apex is not None for e in episodes for segment in e.segments if segment.label != "SIL")

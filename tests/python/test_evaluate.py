@@ -79,7 +79,8 @@ def test_the_trained_rows_decode_as_they_say(corpus) -> None:
 
 @pytest.mark.slow
 def test_the_same_bytes_for_any_number_of_jobs(folder, tmp_path, capsys) -> None:
-    # Catches results in the order they arrive, seeds of the process, times and paths in the report.
+    # Catches results in the order they arrive, seeds of the process, times and paths in the report; and tables that
+    # were not made from the splits beside them.
     for name, jobs in (("one", "1"), ("two", "2")):
         arguments = ["evaluate", str(folder), "--splits", "3", "--methods", QUICK, "--jobs", jobs, "--quiet"]
         assert main([*arguments, "-o", str(tmp_path / name)]) == 0
@@ -88,6 +89,15 @@ def test_the_same_bytes_for_any_number_of_jobs(folder, tmp_path, capsys) -> None
     for name in files:
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes(), name
     assert "processor time per split" in capsys.readouterr().out
+    splits, table = (list(csv.DictReader((tmp_path / "one" / name).read_text(encoding="utf-8").splitlines()))
+                     for name in ("splits.csv", "table1.csv"))
+    values = [float(r["value"]) for r in splits if r["method"] == "mean" and r["measure"] == "diff/openness"]
+    assert len(values) == 3 and len(set(values)) == 3
+    found = next(r for r in table if r["method"] == "mean" and r["measure"] == "diff/openness")
+    assert float(found["mean"]) == pytest.approx(np.mean(values), rel=1e-4)
+    assert float(found["deviation"]) == pytest.approx(np.std(values, ddof=1), rel=1e-3)
+    assert f"| mean shape | {np.mean(values):.4f} ({np.std(values, ddof=1):.4f}) |" in (
+        tmp_path / "one" / "report.md").read_text()
 
 
 @pytest.mark.slow
@@ -97,22 +107,6 @@ def test_held_out_words_from_the_command_line(folder, tmp_path) -> None:
     assert main(arguments) == 0
     text = (tmp_path / "report.md").read_text()
     assert "judged on the words beta, gamma" in text and "7 episodes trained on, 9 held out" in text
-
-
-@pytest.mark.slow
-def test_tables_hold_the_mean_and_deviation_of_the_splits(folder, tmp_path) -> None:
-    # Catches tables that were not made from the splits beside them.
-    arguments = ["evaluate", str(folder), "--splits", "3", "--methods", "mean", "--quiet", "--jobs", "1"]
-    assert main([*arguments, "-o", str(tmp_path)]) == 0
-    rows = list(csv.DictReader(open(tmp_path / "splits.csv", encoding="utf-8")))
-    values = [float(r["value"]) for r in rows if r["method"] == "mean" and r["measure"] == "diff/openness"]
-    assert len(values) == 3 and len(set(values)) == 3
-    found = next(r for r in csv.DictReader(open(tmp_path / "table1.csv", encoding="utf-8"))
-                 if r["measure"] == "diff/openness")
-    assert float(found["mean"]) == pytest.approx(np.mean(values), rel=1e-4)
-    assert float(found["deviation"]) == pytest.approx(np.std(values, ddof=1), rel=1e-3)
-    assert f"| mean shape | {np.mean(values):.4f} ({np.std(values, ddof=1):.4f}) |" in (
-        tmp_path / "report.md").read_text()
 
 
 @pytest.mark.parametrize("jobs", [1, pytest.param(2, marks=pytest.mark.slow)])
@@ -200,6 +194,8 @@ def test_the_timeline_is_what_the_library_is_told() -> None:
     assert item.timeline.length.tolist() == [2, 0, 43] and item.timeline.frames == 45 == len(item.human)
     assert item.timeline.held.tolist() == [0, 2]
     np.testing.assert_allclose(item.human[:, 4], np.arange(45), atol=1e-9)
+    with pytest.raises(LabialError, match="odd: labels QQ"):
+        utterance(replace(episode, segments=(Segment(0.0, 1.0, "QQ"),)), SPEECH, 50)
 
 
 def test_human_frames_are_those_of_the_planted_law() -> None:
@@ -247,13 +243,6 @@ def test_held_out_words_leave_the_training_part() -> None:
         make_splits(corpus, 1, 0, ["beta", "omega"])
     with pytest.raises(LabialError, match="nothing is left"):
         make_splits(corpus, 1, 0, ["beta", "delta"])
-
-
-def test_unknown_labels_are_told() -> None:
-    episode = planted(ramp, 1)[0]
-    strange = Episode("odd", episode.times, episode.frames, (Segment(0.0, 1.0, "QQ"),))
-    with pytest.raises(LabialError, match="odd: labels QQ"):
-        utterance(strange, SPEECH, FPS)
 
 
 def test_inner_validation_stays_inside_the_training_part() -> None:

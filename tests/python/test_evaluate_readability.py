@@ -125,19 +125,16 @@ def test_without_words_there_is_nothing_to_read() -> None:
     assert np.isnan(LipReader(training(rare), rare).measure(still(rare))["readability"])
 
 
-def test_classes_are_places_of_a_grammar_or_everything() -> None:
-    """Catches a command grammar read as one class of 51 words, and free speech cut into classes by chance."""
-    assert word_classes([["bin", "red"], ["lay", "blue"], ["lay", "red"]]) == [("bin", "lay"), ("blue", "red")]
-    assert word_classes([["a", "b"], ["b", "a"]]) == [("a", "b")]
-    assert word_classes([["a", "b"], ["a"]]) == [("a", "b")] and word_classes([[], []]) == []
-
-
 def test_words_are_runs_of_segments() -> None:
-    """Catches words over silence, and pronunciations of one word taken for two."""
+    """Catches words over silence, pronunciations of one word taken for two, a command grammar read as one class of 51
+    words, and free speech cut into classes by chance."""
     item = sentence(["with(2)", "red"], 3, {})
     first, second = spoken(item, 0)
     assert first[0] == "with" and first[1:] == (8, int(item.timeline.start[4])) and second[0] == "red"
     assert spoken(item, SPEECH.phonemes.index("AA"))[0][1:] == (8, int(item.timeline.start[2]))
+    assert word_classes([["bin", "red"], ["lay", "blue"], ["lay", "red"]]) == [("bin", "lay"), ("blue", "red")]
+    assert word_classes([["a", "b"], ["b", "a"]]) == [("a", "b")]
+    assert word_classes([["a", "b"], ["a"]]) == [("a", "b")] and word_classes([[], []]) == []
 
 
 def test_features_are_the_time_normalised_motion_without_its_mean() -> None:

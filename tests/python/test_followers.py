@@ -24,13 +24,10 @@ from labial.tables.followers import (
     FAP_17,
     FROM_CORNERS,
     VALUES,
-    columns,
-    complete,
     every,
     interpolated,
     is_symmetric,
     mirrored,
-    solved,
 )
 from labial.tables.layout import blob, sources, table_bytes
 from labial.tables.model import Model, load, save
@@ -54,19 +51,6 @@ def computing(model: Model) -> Model:
 def symmetric(model: Model) -> Model:
     """The model with its right side after its left one."""
     return replace(model, source=mirrored())
-
-
-def test_frames_are_made_of_their_sources() -> None:
-    """Would catch a channel in another's place, a side that follows the wrong one, corners taken from elsewhere."""
-    source = np.where(every() == FAP_17, FROM_CORNERS, mirrored())
-    assert is_symmetric(source) and not is_symmetric(every())
-    assert solved(source).tolist() == [0, 1, 3, 4, 5, 7, 9, 11] and solved(every()).tolist() == [*range(13)]
-    assert columns(source).tolist() == [0, 1, FROM_CORNERS, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7]
-    frames = complete(np.arange(16.0).reshape(2, 8), source, lambda corners: corners.sum(axis=1))
-    assert frames[0].tolist() == [0, 1, 8, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7]
-    assert frames[1].tolist() == [8, 9, 24, 10, 11, 12, 12, 13, 13, 14, 14, 15, 15]
-    motion = np.arange(26.0).reshape(2, 13)
-    np.testing.assert_array_equal(complete(motion, every(), lambda corners: corners[:, 0]), motion)
 
 
 @needs_runtime

@@ -43,15 +43,12 @@ def test_frames_of_segments_sum_to_the_total_and_round_once():
 
 
 def test_motion_is_sampled_at_frame_centres_from_the_first_segment():
-    """Catches a shift by half a frame, or times counted from the file's zero instead of the first segment's start."""
+    """Catches a shift by half a frame, times counted from the file's zero instead of the first segment's start, and
+    extrapolation or NaN where phonemes outlast the motion."""
     resampled = resample(episode([0.0, 2.0], [0.0, 200.0], [Segment(0.5, 1.5, "A")]), 50)
     assert np.allclose(resampled.motion[:, 0], 100 * (0.5 + (np.arange(50) + 0.5) / 50))
-
-
-def test_values_outside_the_recording_are_held():
-    """Catches extrapolation or NaN where phonemes outlast the motion."""
-    resampled = resample(episode([0.2, 0.4], [5.0, 7.0], [Segment(0, 1, "A")]), 50)
-    assert resampled.motion[0, 0] == 5 and resampled.motion[-1, 12] == 7
+    outside = resample(episode([0.2, 0.4], [5.0, 7.0], [Segment(0, 1, "A")]), 50)
+    assert outside.motion[0, 0] == 5 and outside.motion[-1, 12] == 7
 
 
 def test_half_frames_round_up_in_spite_of_binary_fractions():
@@ -72,6 +69,9 @@ def test_short_segments_stay_with_zero_frames():
     resampled = resample(episode([0.0, 1.0], [0.0, 1.0], segments), 50)
     assert resampled.length.tolist() == [5, 0, 5, 0]
     assert resampled.apex.tolist() == [4, 5, 7, 9]
+    for nothing in ([], [Segment(0, 0.004, "A")]):
+        with pytest.raises(LabialError):
+            resample(episode([0.0, 1.0], [0.0, 1.0], nothing), 50)
 
 
 def test_fast_motion_does_not_fold_back():
@@ -82,13 +82,6 @@ def test_fast_motion_does_not_fold_back():
     assert abs(ripple[2:-2]).max() < 0.1
     centres = (np.arange(95) + 0.5) / 50
     assert abs(slow - np.sin(2 * np.pi * 2 * centres)).max() < 0.01
-
-
-def test_what_has_no_frames_is_refused():
-    """Catches a division by zero or an empty array further on."""
-    for segments in ([], [Segment(0, 0.004, "A")]):
-        with pytest.raises(LabialError):
-            resample(episode([0.0, 1.0], [0.0, 1.0], segments), 50)
 
 
 # ---- Motion that is made, resampled and written part by part ---------------------------------------------------------
@@ -181,17 +174,13 @@ def test_files_do_not_show_the_parts(tmp_path: Path) -> None:
 
 
 def test_spans_are_the_stretches() -> None:
-    """Would catch a stretch at either end that is lost, and one that is a frame too long: against itertools."""
+    """Would catch a stretch at either end that is lost, one that is a frame too long, against itertools, one that is
+    told until the frame after it, and stretches that are left out without a word."""
     rng = np.random.default_rng(1)
     for _ in range(300):
         holds = rng.random(rng.integers(0, 12)) < rng.random()
         expected = [list(group) for held, group in groupby(range(len(holds)), key=lambda t: bool(holds[t])) if held]
         assert spans(holds) == [(group[0], group[-1] + 1) for group in expected]
-
-
-def test_spans_are_told_by_the_times_of_their_frames() -> None:
-    """Would catch a stretch that is told until the frame after it, and stretches that are left out without a word."""
-    times = np.arange(8) / 10
-    holds = np.array([1, 1, 0, 1, 0, 0, 1, 1], dtype=bool)
-    assert spans_told(times, holds, 3) == "0.00 to 0.10, 0.30 to 0.30, 0.60 to 0.70 s"
-    assert spans_told(times, holds, 1) == "0.00 to 0.10 s and 2 times more"
+    told, times = np.array([1, 1, 0, 1, 0, 0, 1, 1], dtype=bool), np.arange(8) / 10
+    assert spans_told(times, told, 3) == "0.00 to 0.10, 0.30 to 0.30, 0.60 to 0.70 s"
+    assert spans_told(times, told, 1) == "0.00 to 0.10 s and 2 times more"

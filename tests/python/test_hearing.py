@@ -186,30 +186,6 @@ def test_the_network_is_that_of_the_definition() -> None:
     assert np.abs(found.faps - faps).max() < 1e-2
 
 
-def test_lips_close_as_far_as_their_score_says() -> None:
-    """Catches lips that stay open in p, b, m, and channels that follow them too far."""
-    model = random_model(4, (Memory(1, 1, 1),))
-    score = np.array([-0.6, -0.1, 0.3, 5.0], dtype=np.float32)
-    faps = np.full((4, 13), 40.0, dtype=np.float32)
-    found = network.closed(model, network.Heard(np.zeros((4, 5), dtype=np.float32), score, faps)).faps
-    way = (model.closed - 40) * model.closing
-    for row, share in zip(found, (0, 0.5, 1, 1)):
-        assert np.allclose(row, 40 + share * way, atol=1e-4)
-    assert np.allclose(found[2:, 0], 40) and np.allclose(found[2:, 12], model.closed[12])
-
-
-def test_frames_are_smoothed() -> None:
-    """By hand: the weights 1, 2, 1, and the first and last frame's neighbours are themselves. At a sound's end the
-    network's next frame counts, not the last one again."""
-    steps = np.array([[0.0], [4.0], [4.0], [8.0]])
-    assert network.smoothed(steps).ravel().tolist() == [1.0, 3.0, 5.0, 7.0]
-    model = random_model(8, (Memory(2, 1, 1),), seed=3)
-    sound = voice(0.5)
-    found = network.hear(model, sound).faps
-    longer = network.hear(model, np.concatenate([sound, np.full(3200, sound[-1])])).faps
-    assert np.allclose(found, longer[: len(found)], atol=1e-3)
-
-
 @pytest.mark.parametrize("name", sorted(PLANS))
 def test_integers_are_near_the_float_network(name: str) -> None:
     """Catches a shift too many: with the weights that the tables hold, features differ by .01, scores by .04 and FAPs

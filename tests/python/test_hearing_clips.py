@@ -56,24 +56,19 @@ def test_what_tells_the_phonemes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("table", "message"), [
     ("a|one\nb\n", r"metadata.csv:2: not NAME\|TEXT"), ("a|one|one|one\n", "metadata.csv:1: not"),
     ("a| \n", "metadata.csv:1: not"), ("a|one\n\na|two\n", "metadata.csv:3: a is already in line 1"),
+    (None, "a.wav: neither timings nor a text"),
 ])  # fmt: skip
-def test_wrong_tables_are_named(table: str, message: str, tmp_path: Path) -> None:
-    """With file and line."""
+def test_folders_without_what_is_needed(table: Optional[str], message: str, tmp_path: Path) -> None:
+    """No folder, no sounds, a sound without anything that tells what it says, an empty text, wrong timings."""
+    for folder, missing in ((tmp_path / "none", "none: not a folder"), (tmp_path, "no sounds")):
+        with pytest.raises(DataError, match=missing):
+            clips.find(folder)
     sound(tmp_path / "a.wav")
-    (tmp_path / "metadata.csv").write_text(table)
+    if table:
+        (tmp_path / "metadata.csv").write_text(table)
     with pytest.raises(DataError, match=message):
         clips.find(tmp_path)
-
-
-def test_folders_without_what_is_needed(tmp_path: Path) -> None:
-    """No folder, no sounds, a sound without anything that tells what it says, an empty text, wrong timings."""
-    with pytest.raises(DataError, match="none: not a folder"):
-        clips.find(tmp_path / "none")
-    with pytest.raises(DataError, match="no sounds"):
-        clips.find(tmp_path)
-    sound(tmp_path / "a.wav")
-    with pytest.raises(DataError, match="a.wav: neither timings nor a text"):
-        clips.find(tmp_path)
+    (tmp_path / "metadata.csv").unlink(missing_ok=True)
     (tmp_path / "a.txt").write_text(" \n")
     with pytest.raises(DataError, match="a.txt: no text"):
         clips.find(tmp_path)
@@ -215,19 +210,12 @@ def noise(seconds: float = 2.0, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(scale=0.1, size=round(seconds * RATE)).astype(np.float32)
 
 
-def loudest(sound: np.ndarray) -> float:
-    """Hz of the largest line of the spectrum."""
-    return float(np.argmax(np.abs(np.fft.rfft(sound))) * RATE / len(sound))
-
-
-def test_speed_changes_length_and_pitch() -> None:
-    found = distort.resampled(tone(440.0), 1.1)
-    assert len(found) == round(RATE / 1.1) and loudest(found) == pytest.approx(484.0, abs=2)
-    assert distort.rms(found) == pytest.approx(distort.rms(tone(440.0)), rel=0.02)
-
-
-def test_levels_and_offsets() -> None:
+def test_speeds_levels_and_offsets() -> None:
     """Peaks in dB of full scale, rounded to whole numbers; silence stays silence; too large an offset is held."""
+    found = distort.resampled(tone(440.0), 1.1)
+    loudest = float(np.argmax(np.abs(np.fft.rfft(found))) * RATE / len(found))
+    assert len(found) == round(RATE / 1.1) and loudest == pytest.approx(484.0, abs=2)
+    assert distort.rms(found) == pytest.approx(distort.rms(tone(440.0)), rel=0.02)
     found = distort.as_integers(tone(440.0), -40.0)
     assert found.dtype == np.int16 and np.abs(found).max() == 328
     assert distort.as_integers(tone(440.0), -40.0, 0.5).mean() == pytest.approx(164, abs=1)
@@ -252,6 +240,8 @@ def test_a_room_rings_after_the_sound() -> None:
     assert np.sum(tail**2) == pytest.approx(1.0, rel=0.01) and np.abs(tail[8100:]).max() < 1e-5
     level = [10 * np.log10(np.mean(tail[a : a + 800] ** 2)) for a in (400, 4400)]
     assert level[0] - level[1] == pytest.approx(30.0, abs=1.5)  # a quarter of a second of the half
+    rumble = np.abs(np.fft.rfft(distort.rumbling(RATE, np.random.default_rng(3)))) ** 2
+    assert rumble[:400].sum() > 0.95 * rumble.sum()
 
 
 def test_clipping_and_companding() -> None:
@@ -262,11 +252,6 @@ def test_clipping_and_companding() -> None:
         given = noise() / np.abs(noise()).max() * scale
         error = distort.companded(given) - given
         assert 34 < 20 * np.log10(distort.rms(given) / distort.rms(error)) < 41
-
-
-def test_rumble_is_low() -> None:
-    spectrum = np.abs(np.fft.rfft(distort.rumbling(RATE, np.random.default_rng(3)))) ** 2
-    assert spectrum[:400].sum() > 0.95 * spectrum.sum()
 
 
 def test_drawn_distortions_cover_their_ranges() -> None:

@@ -137,19 +137,6 @@ def test_words_that_come_late_take_over() -> None:
     assert largest_step(before[-1:] + after[:10]) < STEP
 
 
-def test_an_interruption_closes_the_mouth_and_the_next_answer_opens_it() -> None:
-    """What was left of the interrupted sound moves nothing."""
-    with speaking(3.0) as lips:
-        shown(lips, 0.0, 1.0)
-        lips.cancel(200)
-        lips.sound(babble(1.0), RATE)
-        closing = shown(lips, 1.0, 1.5)
-        assert not any(closing[12])
-        lips.begin_sound(1.5)
-        lips.sound(babble(1.0), RATE)
-        assert max(faps[0] for faps in shown(lips, 1.5, 2.5)) > 50
-
-
 @pytest.mark.parametrize("gap", [0.0, 0.04, 0.1])
 def test_sounds_that_follow_each_other_are_joined(gap: float) -> None:
     """The second sound's lips are faded to from what is shown, which is open where the first sound ends."""

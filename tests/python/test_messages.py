@@ -90,18 +90,9 @@ class _Derived:
     """As Kokoro's results are: what tells is a property, another has no value."""
 
     item: Dict[str, Any]
-
-    @property
-    def word(self) -> str:
-        return self.item["word"]
-
-    @property
-    def start(self) -> float:
-        return self.item["start"]
-
-    @property
-    def end(self) -> float:
-        return self.item["end"]
+    word = property(lambda self: self.item["word"])
+    start = property(lambda self: self.item["start"])
+    end = property(lambda self: self.item["end"])
 
     @property
     def none(self) -> str:

@@ -202,19 +202,10 @@ def test_round_trip_and_same_bytes(tmp_path: Path) -> None:
         assert np.array_equal(getattr(model, item.name), getattr(again, item.name)), item.name
 
 
-@pytest.mark.parametrize(
-    ("field", "value"),
-    [
-        ("shape", np.nan),
-        ("kernel", np.inf),
-        ("duration_variance", 0.0),
-        ("state_precision", -1.0),
-        ("state_anchor", -1e-9),
-        ("log_transition", 0.5),
-        ("viseme_class", 99),
-        ("component_count", 0),
-    ],
-)
+@pytest.mark.parametrize(("field", "value"), [
+    ("shape", np.nan), ("kernel", np.inf), ("duration_variance", 0.0), ("state_precision", -1.0),
+    ("state_anchor", -1e-9), ("log_transition", 0.5), ("viseme_class", 99), ("component_count", 0),
+])
 def test_refuses_values_out_of_range(field: str, value: float) -> None:
     """Each would otherwise come out as tables that mean nothing."""
     model = random_model(2)
@@ -222,13 +213,8 @@ def test_refuses_values_out_of_range(field: str, value: float) -> None:
     array.flat[0] = value
     with pytest.raises(ModelError):
         dataclasses.replace(model, **{field: array})
-
-
-def test_refuses_a_state_that_cannot_be_reached() -> None:
-    """The library's Viterbi search relies on a predecessor for every state."""
-    model = random_model(2)
     transition = model.log_transition.copy()
-    transition[3, :, 5] = -np.inf
+    transition[3, :, 5] = -np.inf  # a state that cannot be reached, on which the library's search relies
     with pytest.raises(ModelError, match="predecessor"):
         dataclasses.replace(model, log_transition=transition)
 
@@ -245,15 +231,8 @@ def test_names_the_file_that_is_no_model(tmp_path: Path) -> None:
         path.write_bytes(damaged)
         with pytest.raises(ModelError, match="model.npz"):
             load(path)
-
-
-def test_says_that_a_model_is_of_another_format(tmp_path: Path) -> None:
-    """Whoever has a file of another version is told so, and not that an array is missing in it."""
-    path = tmp_path / "model.npz"
-    save(random_model(1), path)
-    members = {**members_of(path), "model.json": b'{"format": 6}'}
-    del members["emission_mean.npy"]
-    path.write_bytes(archive(members))
+    del members["emission_mean.npy"]  # whoever has a file of another version is told so, not that an array is missing
+    path.write_bytes(archive({**members, "model.json": b'{"format": 6}'}))
     with pytest.raises(ModelError, match="format 6, but this version of labial reads formats 3 to 5"):
         load(path)
 

@@ -6,8 +6,6 @@ separation is 20 and its mouth width 50, so that 1 unit is 1024/20 FAP units up 
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -97,25 +95,19 @@ def made(tmp_path, *paths, given=Given(), cutoff=0.0):  # noqa: B008, a constant
     return [episode.frames for episode in read_corpus(tmp_path / "corpus")]
 
 
-def test_a_still_head_gives_the_faps_of_the_closed_form(tmp_path):
-    """Catches a wrong landmark, axis, sign or unit of any channel. Files hold two decimals."""
+@pytest.mark.parametrize("head", ["still", "moving", "flat"])
+def test_landmarks_give_the_faps_of_the_closed_form(tmp_path, head):
+    """Catches a wrong landmark, axis, sign or unit of any channel; rotation, scale or translation that leaks into the
+    mouth, which a talking head would be trained to do; 2-D alignment that is not one, where FAP 16 follows FAP 52.
+    Files hold two decimals."""
     points, faps = talking()
     assert (abs(faps).max(axis=0) > 5).all()
+    if head != "still":
+        points = turned(points, flat=head == "flat")
+    if head == "flat":
+        points = points[:, :468, :2]
+        faps[:, FAP_NUMBERS.index(16)] = 0.52 * faps[:, FAP_NUMBERS.index(52)]
     assert abs(made(tmp_path, write(tmp_path / "in", landmarks=points))[0] - faps).max() < 0.006
-
-
-def test_head_motion_leaves_no_trace(tmp_path):
-    """Catches rotation, scale or translation that leaks into the mouth, which a talking head would be trained to do."""
-    points, faps = talking()
-    assert abs(made(tmp_path, write(tmp_path / "in", landmarks=turned(points)))[0] - faps).max() < 0.006
-
-
-def test_flat_landmarks_need_no_depth(tmp_path):
-    """Catches 2-D alignment that is not one; FAP 16 then follows FAP 52."""
-    points, faps = talking()
-    faps[:, FAP_NUMBERS.index(16)] = 0.52 * faps[:, FAP_NUMBERS.index(52)]
-    path = write(tmp_path / "in", landmarks=turned(points, flat=True)[:, :468, :2])
-    assert abs(made(tmp_path, path)[0] - faps).max() < 0.006
 
 
 @pytest.mark.parametrize("where", ["file", "option"])
@@ -213,6 +205,9 @@ def test_the_corpus_keeps_words_and_apexes(tmp_path):
     assert [s.label for s in episode.segments] == ["SIL", "AA", "P", "IY", "SIL"]
     assert episode.segments[1].apex == 1.2 and episode.segments[1].word == "hah"
     assert [s.end for s in episode.segments] == [1.0, 1.4, 1.5, 2.0, 3.0]
+    with pytest.warns(UserWarning, match="10 frames per second") as caught:
+        record([write(tmp_path / "in", landmarks=points[::5], fps=10)], tmp_path / "few", SPEECH, Given(), 0.0)
+    assert len(caught) == 1
 
 
 def flip(points, axis):
@@ -316,12 +311,3 @@ def test_files_that_do_not_go_together(tmp_path, capsys):
     assert main(arguments) == 0
     assert "1 recordings, 0 min 3 s" in capsys.readouterr().out
     fails("corpus: not a folder that is new or empty")
-
-
-def test_few_frames_per_second_are_said(tmp_path):
-    points, _ = talking()
-    path = write(tmp_path / "in", landmarks=points[::5], fps=10)
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        made(tmp_path, path)
-    assert ["10 frames per second" in str(item.message) for item in caught] == [True]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import random
 import subprocess
 import sys
@@ -134,19 +133,6 @@ def test_examples_are_what_the_command_writes(tmp_path: Path, path: Path) -> Non
     assert main(["rig", str(path), "-o", str(tmp_path), "--no-figure"]) == 0
     for suffix in (".c", ".h"):
         assert (tmp_path / f"{name}{suffix}").read_bytes() == (EXAMPLES[path] / f"{name}{suffix}").read_bytes()
-
-
-def test_float_rig_by_hand(tmp_path: Path) -> None:
-    """The reference itself: two servos worked out on paper, in Maestro's units."""
-    (tmp_path / "hand.toml").write_text(
-        'unit = "quarter_us"\n[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
-        "[output.corner]\nfrom = { fap53 = 0.5, fap3 = 0.1 }\nneutral = 1500\ngain = 2\ninvert = true\n"
-        "minimum = 1300\nmaximum = 1600\n")
-    rig = read(tmp_path / "hand.toml", "hand")
-    frames = np.zeros((3, 13))
-    frames[1, [0, 3, 4, 5]] = 200, 60, -360, 40  # opening 300; 0.5 * 40 + 0.1 * 200 = 40
-    frames[2, [4, 5]] = -900, 1000
-    assert expected(rig, convert(rig), frames).tolist() == [[5600, 6000], [6600, 5680], [7600, 5200]]
 
 
 def test_generated_code_is_clean_cplusplus_too(tmp_path: Path) -> None:
@@ -294,15 +280,8 @@ def test_without_matplotlib_the_way_out_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     """The tables need no drawing."""
-    real = builtins.__import__
     monkeypatch.delitem(sys.modules, "labial.see.plot", raising=False)  # which other tests may have imported
-
-    def refuse(name: str, *rest: object, **named: object) -> object:
-        if name.split(".")[0] == "matplotlib":
-            raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
-        return real(name, *rest, **named)
-
-    monkeypatch.setattr(builtins, "__import__", refuse)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main(["rig", str(FACES / "jaw.toml"), "-o", str(tmp_path)]) == 1
     assert "--no-figure" in capsys.readouterr().err
     assert main(["rig", str(FACES / "jaw.toml"), "-o", str(tmp_path), "--no-figure"]) == 0
@@ -322,7 +301,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ("\ufeff" + JAW, None),
         ("output = 3", "output: at least one table"),
         ("[output]\njaw = 3", "output.jaw: is not a table"),
-        ("[output.jaw\n", ":1: not TOML: "),
         (JAW + "slew = = 2\n", ":5: not TOML: "),
         ("outputs = 3\n" + JAW, "outputs: unknown key; did you mean output?"),
         ("colour = 3\n" + JAW, "colour: unknown key; known are unit,"),
@@ -341,7 +319,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         ("frequency = 50\n" + JAW, "frequency: has no meaning for the unit us"),
         ('unit = "pca9685"\nfrequency = 23.84\n' + JAW, "frequency: 23.84 is not within 23.85 .. 1525.87 Hz"),
         ('unit = "pca9685"\nfrequency = 23.85\n' + JAW, None),
-        ('unit = "pca9685"\nfrequency = 1526\n' + JAW, "frequency: 1526 is not within 23.85 .. 1525.87 Hz"),
         ('unit = "pca9685"\nfrequency = 1525.87\n' + JAW, "output.jaw.neutral: 8750 ticks of 0.16 us"),
         ('unit = "pca9685"\n' + JAW + "slew = 2\n", "output.jaw.slew: 2 is less than half a step of its values, ticks"),
         ('unit = "pca9685"\n' + JAW + "acceleration = 2\n", "output.jaw.acceleration: 2 is less than half a step"),
@@ -354,7 +331,6 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW.replace("[output.jaw]", "[output.outputs]"), "output.outputs: this name is taken"),
         (JAW.replace('"opening"', '"openning"'), "no gesture or FAP is called 'openning'; did you mean opening?"),
         (JAW.replace('"opening"', "{}"), "output.jaw.from: is the name of a gesture"),
-        (JAW.replace('from = "opening"\n', ""), "output.jaw.from: is the name of a gesture"),
         (JAW.replace('"opening"', "{ jaw = true }"), "output.jaw.from.jaw: True is not a number"),
         (JAW.replace('"opening"', "{ jaw = 1e9 }"), "output.jaw.from.jaw: 1e+09 is not within -1000 .. 1000"),
         (JAW.replace('"opening"', "{ jaw = 0 }"), "output.jaw.from: all weights are zero"),
@@ -371,12 +347,9 @@ TAKES_ANY_NUMBER = not hasattr(sys, "set_int_max_str_digits")
         (JAW + "reach = 0\n", "output.jaw.reach: 0 is not positive"),
         (JAW + "reach = nan\n", "output.jaw.reach: nan is not a finite number"),
         (JAW.replace("neutral = 1400\n", ""), "output.jaw.neutral: is missing"),
-        (JAW.replace("1400", "[]"), "output.jaw.neutral: [] is not a number"),
-        (JAW.replace("1400", "inf"), "output.jaw.neutral: inf is not a finite number"),
         (JAW.replace("1400", "9" * 400), "output.jaw.neutral: inf is not a finite number"),
         (JAW.replace("1400", "9" * 5000), "output.jaw.neutral: inf" if TAKES_ANY_NUMBER else ": not TOML: "),
         (JAW.replace("1400", "150"), "output.jaw.neutral: 150 is not a servo's pulse, 400 .. 2600 microseconds"),
-        (JAW.replace("1900", "19000"), "output.jaw.full: 19000 is not a servo's pulse"),
         (JAW.replace("1900", "1400"), "output.jaw.full: is the same as neutral"),
         (JAW.replace("full = 1900\n", ""), "output.jaw.full: either full (the value at full extent) or gain"),
         (JAW + "gain = 2\n", "FAP unit) is needed, not both"),

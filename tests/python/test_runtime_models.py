@@ -110,17 +110,6 @@ def test_models_of_one_stream_have_one_rate(exported: ExportedModel, tmp_path: P
         assert len(list(stream)) == 10 and stream.fps == 25
 
 
-def test_models_may_change_at_every_phoneme(voice: Path) -> None:
-    """More models at a time than a stream in C holds by default: none is refused."""
-    models = [labial.Model(voice) for _ in range(20)]
-    with labial.Stream(exact=True) as stream:
-        for number in range(300):
-            stream.use(models[number % 20])
-            stream.push("AA" if number % 2 else "M", 20)
-        stream.end()
-        assert len(list(stream)) == 300
-
-
 # ---- Rigs
 
 
@@ -242,9 +231,11 @@ def test_punctuation_is_silence() -> None:
 
 
 def test_the_type_is_the_same_without_numpy() -> None:
+    """And is told to type checkers."""
     script = "import labial, sys\nsys.modules['numpy'] = None\nprint(labial.render([('AA', 100)]))\n"
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     motion = labial.render([("AA", 100)])
+    assert Path(labial.__file__).with_name("py.typed").is_file()
     assert done.stdout == f"{motion}\n" and isinstance(motion, list) and isinstance(motion[0], tuple)
     assert np.array(motion, "int16").shape == (5 + 12, 13)
 
@@ -265,10 +256,6 @@ def test_long_silences_are_split(tmp_path: Path) -> None:
     path.write_text("0 1 SIL\n1 3602 AA\n")
     with pytest.raises(DataError, match=r"night.lab:2: 'AA' lasts 3601 s, more than the 3600 s"):
         labial.read_timings(path)
-
-
-def test_types_are_told_to_type_checkers() -> None:
-    assert Path(labial.__file__).with_name("py.typed").is_file()
 
 
 # ---- Calls of the run-time within calls, by signal handlers and callbacks, and in forked processes -------------------

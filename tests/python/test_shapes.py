@@ -55,17 +55,6 @@ def test_density_equals_scikit_learns():
     np.testing.assert_allclose(ours, oracle.score_samples(vectors / scale) - np.log(scale).sum(), rtol=1e-9)
 
 
-def test_equation_2_selects_by_duration():
-    # Catches a selection that ignores the duration or mixes shapes up.
-    vectors = two_clusters(np.random.default_rng(2), 300)
-    mixture = mixing.fit_mixture(vectors, mixing.corpus_scale(vectors), 2, seed=0)
-    tables = mixing.shape_tables([mixture], conditional=False)
-    zero = np.zeros(2, dtype=np.int64)
-    selected = shapes(tables, choose(tables, zero, np.array([0.06, 0.20]), zero, zero, soft=False))
-    np.testing.assert_allclose(selected[0], np.linspace(150, -300, 13), atol=8)
-    np.testing.assert_allclose(selected[1], np.linspace(-200, 100, 13), atol=8)
-
-
 def test_slope_recovers_a_linear_law():
     # Catches a slope in the wrong unit or sign.
     rng = np.random.default_rng(3)
@@ -275,21 +264,6 @@ def test_a_channel_is_widened_about_the_middle_of_its_range() -> None:
     still = (after - gain * before)[0] / (1 - gain)
     low, high = np.percentile(motion, [5, 95], axis=0)
     assert (gain > 1.2).all() and np.allclose(still, (low + high) / 2)
-
-
-def test_floats_interpolate_between_the_knots_of_pairs() -> None:
-    """One knot is two equal ones; of two, the middle frame of an odd number has the mean."""
-    one, two = random_model(8), random_model(8, knots=2)
-    same = dataclasses.replace(one, pair_shape=np.repeat(one.pair_shape, 2, axis=1))
-    asked = ([1, 4, 2, 7, 3], [120, 60, 200, 90, 70], [6, 3, 10, 5, 3])
-    assert np.allclose(targets(FloatTables(one), *asked), targets(FloatTables(same), *asked))
-    bare = without_floors(dataclasses.replace(two, kernel=np.zeros_like(two.kernel)))
-    found = targets(FloatTables(bare), *asked)[9:19]  # the third phoneme's ten frames
-    steps = np.diff(found, axis=0)
-    assert np.allclose(steps, steps[0]) and np.abs(steps).max() > 1
-    ends = FloatTables(bare).select(*(np.array([value]) for value in (2, 200, 4, 7)))[0]
-    assert np.allclose(found[0], ends[0] + 0.05 * (ends[1] - ends[0]))
-    assert np.allclose(found[9], ends[0] + 0.95 * (ends[1] - ends[0]))
 
 
 # ---- Temporal kernels ------------------------------------------------------------------------------------------------

@@ -145,7 +145,7 @@ def test_times_that_are_too_short_are_asked_about(tmp_path: Path, text: str, tol
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no named pipes")
-@pytest.mark.parametrize("name", ["a.lab", "a.txt", "a.json", "a.TextGrid"])
+@pytest.mark.parametrize("name", ["a.txt", "a.json", "a.TextGrid"])
 def test_timings_come_from_a_pipe(tmp_path: Path, name: str) -> None:
     """Catches a file that is opened twice: the second time a pipe is empty, or blocks."""
     content = {".json": SAMPLES["plain"].text.encode(), ".TextGrid": FILES["aligned.TextGrid"]}.get(

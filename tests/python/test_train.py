@@ -101,11 +101,20 @@ def test_both_sides_learn_their_mean(corpus):
     assert train(corpus, method="paper", jobs=1, **OPTIONS).source.tolist() == [*range(13)]
 
 
-def test_the_published_method_has_nothing_added(models):
-    # Catches additions that leak into the method that comparisons call the paper's.
-    model = models["paper"]
-    assert not model.soft and not model.slope.any() and not model.state_anchor.any()
-    assert model.kernel.shape == (40, 0, 13) and model.log_previous.shape[1] == 0
+def test_tables_are_those_of_their_method(models):
+    # Catches additions that leak into the method that comparisons call the paper's, -inf where the search could come to
+    # a dead end, and precisions that 8-bit weights cannot hold together: the library's range is 1 : 4095.
+    paper, own = models["paper"], models["labial"]
+    assert not paper.soft and not paper.slope.any() and not paper.state_anchor.any()
+    assert paper.kernel.shape == (40, 0, 13) and paper.log_previous.shape[1] == 0
+    for model in models.values():
+        assert np.isfinite(model.log_initial).all()
+        assert np.isfinite(np.diagonal(model.log_transition, axis1=1, axis2=2)).all()
+        np.testing.assert_allclose(np.exp(model.log_transition).sum(axis=2), 1)
+        np.testing.assert_allclose(np.exp(model.log_initial).sum(axis=1), 1)
+    hold = own.state_precision[..., 0] + own.state_anchor
+    whole = hold + own.state_precision[..., 1] / 2 + 6 * own.state_precision[..., 2]
+    assert (whole.max(axis=1) / hold.min(axis=1) < 4095).all()
 
 
 def test_features_are_clustered_as_they_are_unless_asked(corpus, models):
@@ -131,23 +140,6 @@ def test_every_phoneme_has_shapes_and_back_offs_are_told(models):
         assert f"{label}: 0 samples" in told
     assert pooled["B"] == "bilabial" and model.substitutes["F"] in LABELS
     assert "P: " not in told
-
-
-def test_every_state_can_be_reached_and_left(models):
-    # Catches -inf where the search could come to a dead end.
-    for model in models.values():
-        assert np.isfinite(model.log_initial).all()
-        assert np.isfinite(np.diagonal(model.log_transition, axis1=1, axis2=2)).all()
-        np.testing.assert_allclose(np.exp(model.log_transition).sum(axis=2), 1)
-        np.testing.assert_allclose(np.exp(model.log_initial).sum(axis=1), 1)
-
-
-def test_diagonals_stay_within_the_devices_range(models):
-    # Catches precisions that 8-bit weights cannot hold together: the library's range is 1 : 4095.
-    model = models["labial"]
-    hold = model.state_precision[..., 0] + model.state_anchor
-    whole = hold + model.state_precision[..., 1] / 2 + 6 * model.state_precision[..., 2]
-    assert (whole.max(axis=1) / hold.min(axis=1) < 4095).all()
 
 
 def test_wild_precisions_are_limited():

@@ -16,7 +16,7 @@ from labial.reference.contact import raised
 from labial.reference.stream import aims, synthesise
 from labial.reference.tables import Equation, ExportedTables, FloatTables
 from labial.reference.trajectory import solve, solve_whole, starts
-from labial.reference.units import Segment, frame_counts, rest, segments, unit_ends
+from labial.reference.units import Segment, frame_counts, segments, unit_ends
 from labial.tables.quantise import quantise
 from models import random_model, streams
 from packages import sptk
@@ -169,24 +169,6 @@ def test_contact_lasts_three_frames_at_least() -> None:
     assert shut((OPEN, 2), (LIPS, 1))[2] == [False, True, True]
 
 
-def test_floors_hold_where_contact_is() -> None:
-    """Borrowed frames take the floor of the phoneme that borrows them; other floors stay with their own phoneme."""
-    first, second, _ = shut((OPEN, 3), (LIPS, 1), (OPEN, 2))
-    assert first == [0.0, 0.0, 40.0, 40.0, 40.0, 0.0]
-    assert second[3] == 10.0 and second[0] == 0.0
-    deep = raised(np.full((2, 2), -80.0), np.array([OPEN, OPEN]), np.array([2]), np.zeros(2, dtype=int), SIL, FLOOR,
-                  CONTACT, parted=np.zeros(2))[0]
-    assert deep.tolist() == [[-50.0, -80.0]] * 2
-
-
-def test_a_longer_closure_holds_its_middle() -> None:
-    """Half of the frames, but three; an odd one is left at the end."""
-    first, second, contact = shut((LIPS, 4))
-    assert contact == [True] * 3 + [False] and first == [40.0] * 3 + [0.0] and second == [10.0] * 4
-    assert shut((LIPS, 5))[2] == [False] + [True] * 3 + [False]
-    assert shut((LIPS, 7))[2] == [False] + [True] * 4 + [False] * 2
-
-
 def test_lips_part_between_two_close_contacts() -> None:
     """Up to three frames between contacts are 55 below the floor, but for those that a contact borrows."""
     assert shut((LIPS, 3), (OPEN, 2), (LIPS, 3))[::2] == (
@@ -195,26 +177,6 @@ def test_lips_part_between_two_close_contacts() -> None:
     assert shut((LIPS, 3), (OPEN, 1), (SIL, 1), (LIPS, 3))[0] == [40.0] * 3 + [0.0] * 2 + [40.0] * 3
     assert shut((LIPS, 3), (OPEN, 2), (LIPS, 2))[0] == [40.0] * 3 + [-15.0] + [40.0] * 3
     assert shut((LIPS, 3), (OPEN, 1), (LIPS, 2))[0] == [40.0] * 6
-
-
-def test_a_mouth_comes_to_rest_in_pauses() -> None:
-    """In the head of a pause that was cut, from the first frame on by a sixteenth more, where silence says so; in its
-    tail too where nothing follows, but not where it leads on, nor in a pause that was not cut, whatever stands beside
-    it. It is no contact, which would be held."""
-    def shares(*pushed: Tuple[int, int]) -> List[int]:
-        return rest(segments(pushed, SIL, 6, 50)).tolist()
-
-    assert shares((OPEN, 20), (SIL, 520), (OPEN, 20)) == [0, *range(1, 17), 16, 16, 16, 16, *[0] * 6, 0]
-    assert shares((OPEN, 20), (SIL, 200)) == [0, *range(1, 11)]
-    assert shares((SIL, 100), (SIL, 120), (OPEN, 20)) == [0] * 12
-    assert shares((SIL, 200), (OPEN, 20)) == [*[16] * 4, *[0] * 7]  # nothing leads to where it rests
-    assert shares((SIL, 120)) == [0] * 6
-    floor = np.array([[-160.0, 32.0], [-np.inf, -np.inf]])
-    resting = np.array([[True, False], [False, False]])
-    labels, length, step = np.array([OPEN] + [SIL] * 20), np.array([1, 20]), np.minimum(np.arange(21), 16)
-    target, contact = raised(np.full((21, 2), 64.0), labels, length, step, SIL, floor, resting, parted=np.zeros(2))
-    assert not contact.any() and (target[:, 1] == 64.0).all()
-    np.testing.assert_allclose(target[:, 0], 64.0 - 224.0 * step / 16)
 
 
 @pytest.mark.parametrize("seed", range(4))
