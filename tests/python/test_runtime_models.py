@@ -183,6 +183,8 @@ def test_timings_from_anything_that_holds_them(tmp_path: Path) -> None:
         path = tmp_path / "a.json"
         path.write_text(SAMPLES[name].text, encoding="utf-8")
         assert labial.read_timings(SAMPLES[name].messages) == labial.read_timings(path)
+    assert labial.read_timings(SAMPLES["elevenlabs"].messages[0]) == labial.read_timings(
+        SAMPLES["elevenlabs"].messages[:1])
     for given in (3, None, object()):
         with pytest.raises(TypeError, match="timings are a path, a file, a list or a dict"):
             labial.read_timings(given)  # type: ignore[arg-type]

@@ -49,6 +49,17 @@ def test_the_ways_by_hand() -> None:
     assert len(way) == 12 and not way[-1].any() and np.allclose(way[5], 50) and np.allclose(way[2], 100 * (1 - 10 / 64))
 
 
+@pytest.mark.parametrize("opening, touching, closing", [
+    (24.4, [0, 1], 9), (24.6, [0, 1], 2), (-90.0, [0], 9), (90.0, [3, 4, 6], 5), (100.0, [6], 8), (100.0, [7], 9),
+    (100.0, [8], 9), (100.0, [], 9),
+])
+def test_a_contact_hurries_lips(opening: float, touching: List[int], closing: int) -> None:
+    """Lips that are apart are where the motion is with the second frame of the first contact."""
+    held, contact = np.full(13, 50.0), np.zeros(12, dtype=bool)
+    held[3], held[4], contact[touching] = 0.0, -opening, True
+    assert fade.closing_steps(held, contact) == closing
+
+
 def test_what_is_delivered_does_not_depend_on_the_parts() -> None:
     """Would catch a fade that begins anew with each part, and an end after each."""
     rng = np.random.default_rng(3)

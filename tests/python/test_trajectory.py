@@ -179,6 +179,14 @@ def test_lips_part_between_two_close_contacts() -> None:
     assert shut((LIPS, 3), (OPEN, 1), (LIPS, 2))[0] == [40.0] * 6
 
 
+def test_whole_numbers_come_to_rest_as_c_divides() -> None:
+    """Towards zero: 7 positions on the way to 0, and -7, lose as much."""
+    floor, resting = np.array([[0, 0]]), np.array([[True, True]])
+    aim, step = np.repeat([[7, -7]], 20, axis=0), np.minimum(np.arange(1, 21), 16)
+    found = raised(aim, np.zeros(20, dtype=int), np.array([20]), step, SIL, floor, resting, parted=np.zeros(2))[0]
+    assert found[:4].tolist() == [[7, -7], [7, -7], [6, -6], [6, -6]] and not found[15:].any()
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_frames_in_contact_are_held_by_their_target_alone(seed: int) -> None:
     """In contact equation 3 has no static mean to be drawn to, and the anchor is what the state holds with, or the

@@ -15,7 +15,7 @@ from labial.evaluate.search import units_path
 from labial.reference.published import path_cost
 from labial.reference.stream import aims
 from labial.reference.tables import ExportedTables, FloatTables
-from labial.reference.viterbi import Chains, block_ends, decode, looked_at, normal_chains
+from labial.reference.viterbi import Chains, block_ends, decode, looked_at, normal_chains, window
 from labial.tables.fixed import LEAP, SEARCHED
 from labial.tables.model import load
 from labial.tables.phones import drawn_streams
@@ -149,6 +149,32 @@ def test_a_step_by_hand() -> None:
     assert decode(chains, [targets], [ends_of(5)], 1, lag=1)[0][:, 0].tolist() == [0, 0, 1, 1, 1]
     # A unit that ends with the second frame leaves its best alone: the second state is entered anew, for 40.
     assert decode(chains, [targets], [ends_of(5, 1)], 1)[0][:, 0].tolist() == [0, 0, 0, 0, 0]
+
+
+def test_a_leap_goes_before_an_edge_that_costs_as_much() -> None:
+    """The third state is entered from the second for 100 + 155, or from the best, the first, for 255: at once it is the
+    same, but not for who asks where it came from. An edge that costs one less wins."""
+    costs = np.array([[0, 100, 300], [900, 900, 0]])
+
+    def emission(targets: np.ndarray, states: np.ndarray) -> np.ndarray:
+        return costs[targets.astype(int)[..., None], states]
+
+    transition = np.full((13, 3, 3), np.inf)
+    mean, initial = np.tile([0.0, 100.0, 200.0], (13, 1)), np.zeros((13, 3))
+    targets = np.repeat([[0.0], [1.0]], 13, axis=1)
+    for edge, origin in ((155.0, 0), (154.0, 1)):
+        transition[:, 1, 2] = edge
+        path = decode(Chains(mean, transition, initial, 255.0, emission), [targets], [ends_of(2)], 1, lag=1)[0]
+        assert path[:, 0].tolist() == [origin, 2]
+
+
+def test_the_window_lies_around_the_nearest_state() -> None:
+    """Ties go to the lower state, equal means to the first above and the last below; the ends push the window in."""
+    mean = np.tile([0, 10, 20, 20, 20, 30, 40, 50], (13, 1))
+    expected = {-5: 0, 4: 0, 5: 0, 6: 0, 15: 0, 16: 1, 20: 1, 24: 3, 25: 3, 26: 4, 36: 5, 99: 5}
+    for x, first in expected.items():
+        assert (window(np.full(13, x), mean, 3) == first).all(), x
+    assert (window(np.full(13, 20), mean, 8) == 0).all()
 
 
 def test_utterances_are_searched_as_if_alone() -> None:
