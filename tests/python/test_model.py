@@ -74,27 +74,6 @@ def test_names_are_whole_entries() -> None:
             emit.names_source(replace(exported, names=bad))
 
 
-@pytest.mark.parametrize("method", [pytest.param("paper", marks=pytest.mark.slow), "labial"])
-def test_generated_code_is_clean_and_names_are_found(tmp_path: Path, method: str) -> None:
-    """Strict warnings are errors; labels, aliases and labels from outside ASCII must survive as C strings."""
-    model = quantise(random_model(2, method), "some_model")
-    emit.write(model, tmp_path)
-    (tmp_path / "main.c").write_text("""
-#include <string.h>
-#include "some_model.h"
-static int find(const char *name) { return labial_find(&some_model_names, name, strlen(name)); }
-int main(void)
-{
-    if (labial_model_check(&some_model) != LABIAL_OK) return 1;
-    if (find("P3") != SOME_MODEL_P3 || find("sil") != SOME_MODEL_SIL || find("\\311\\221") != SOME_MODEL_P2) return 2;
-    if (find("nothing") != LABIAL_ERROR_NAME) return 3;
-    if (strcmp(some_model_names.labels[SOME_MODEL_P4], "P4") != 0) return 4;
-    return 0;
-}
-""")
-    run(build(tmp_path, "main.c", "some_model.c", "some_model_names.c"))
-
-
 def test_another_format_does_not_compile(tmp_path: Path) -> None:
     """Tables of another version must not be linked by accident."""
     emit.write(quantise(random_model(2), "some_model"), tmp_path)

@@ -96,18 +96,6 @@ def test_fractions_of_milliseconds_add_up() -> None:
     assert len(labial.render([("S", 0.3)])) == 0
 
 
-def test_tick_follows_a_clock() -> None:
-    """One frame for each call, None while the first is on its way, where phonemes are missing, and at the end."""
-    with labial.Stream(exact=True) as stream:
-        stream.push("AA", 40)
-        stream.push("SIL", 1000)
-        answers = [stream.tick() for _ in range(9)]
-        assert answers[:6] == [None] * 6 and [frame.number for frame in answers[6:]] == [0, 1, 2]
-        stream.end()
-        frames = list(stream)
-        assert stream.tick() is None and stream.done and frames[-1].number == 51
-
-
 def test_laughs_differ_unless_the_seed_is_the_same() -> None:
     def laughs(*seeds: Any) -> List[bytes]:
         found = []
@@ -313,21 +301,3 @@ def test_stream_has_the_same_frames(script: Dict[str, Any], feed: str) -> None:
     wanted = conformance_frames()[script["name"]]
     assert len(rows) == len(wanted)
     assert rows == [tuple(row) for row in wanted.tolist()]
-
-
-def test_render_has_the_same_frames() -> None:
-    """Whole utterances of one part: numbers or labels, a list of tuples."""
-    played = 0
-    for script in conformance_scripts():
-        part = script["parts"][0]
-        pushes = part["pushes"]
-        if len(script["parts"]) > 1 or part["cancel"] or part["articulation"]:
-            continue
-        if any(push[0] != "speech" for push in pushes):
-            continue
-        for name in (lambda phoneme: phoneme, lambda phoneme: labial.speech_en.phonemes[phoneme]):
-            motion = labial.render([(name(phoneme), milliseconds) for _, phoneme, milliseconds in pushes])
-            assert isinstance(motion, list) and all(isinstance(row, tuple) and len(row) == 13 for row in motion)
-            assert (np.array(motion).reshape(-1, 13) == conformance_frames()[script["name"]]).all()
-        played += 1
-    assert played > 10

@@ -254,18 +254,6 @@ def test_other_forms_of_messages(tmp_path: Path, source: str, content: Any) -> N
     assert [label for _, _, label in found] == ["G", "OW"] and found[-1][1] == 0.3
 
 
-def test_command_line(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    """Without -o the phonemes go to standard output; the same readers serve synth; --from settles the format."""
-    model = Path(__file__).parents[2] / "export" / "models" / "speech_en.npz"
-    plain, azure = (str(put(tmp_path, SAMPLES[name].messages, f"{name}.json")) for name in ("plain", "azure"))
-    assert main(["timings", plain]) == 0
-    assert capsys.readouterr().out.splitlines()[1] == "0.1200 0.2000 M"
-    assert main(["synth", str(model), azure, "-o", str(tmp_path / "a.csv")]) == 0
-    assert len((tmp_path / "a.csv").read_text().splitlines()) == 1 + 47 + 12
-    assert main(["timings", azure, "--from", "polly"]) == 1
-    assert "times nothing here" in capsys.readouterr().err
-
-
 def test_times_are_moved_and_words_pronounced_otherwise(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """An offset for every format, cut off at the beginning; own words, and other languages where espeak-ng is."""
     path = put(tmp_path, SAMPLES["words"].messages)

@@ -33,7 +33,7 @@ TOKENS = [
     b"}", b":", b",", b"null", b"\xff\xfe", b"\xef\xbb\xbf", b"\xe2\x80\xa8", b"\x0b", b"item", b"<exists>", b"\xcc",
     b"[" * 5000,
 ]
-DAMAGED = 60  # files made of each
+DAMAGED = 30  # files made of each
 
 
 def damaged(data: bytes, chance: random.Random) -> bytes:
