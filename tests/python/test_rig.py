@@ -92,7 +92,7 @@ def made_up(seed: int) -> str:
 
 
 def curved(seed: int) -> str:
-    """One whose outputs bend."""
+    """One whose outputs bend, every other one with a value of closed lips."""
     rng = np.random.default_rng(seed)
     text = f'unit = "{["us", "quarter_us", "pca9685", "plain"][seed % 4]}"\n'
     for number in range(4):
@@ -100,7 +100,8 @@ def curved(seed: int) -> str:
         openings = np.cumsum(rng.uniform(0.5, 3.0, len(values))) * rng.choice([-1, 1])
         neutral, full = rng.permutation([values[0], values[-1]])
         points = ", ".join(f"[{value}, {opening:.3f}]" for value, opening in zip(values, openings))
-        text += (f'[output.o{number}]\nfrom = "opening"\nneutral = {neutral}\nfull = {full}\nminimum = 900\n'
+        rest = "closed" if number % 2 else "neutral"
+        text += (f'[output.o{number}]\nfrom = "opening"\n{rest} = {neutral}\nfull = {full}\nminimum = 900\n'
                  f"maximum = 2200\ncurve = [{points}]\n")
     return text
 
