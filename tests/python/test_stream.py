@@ -73,6 +73,17 @@ def test_what_is_delivered_does_not_depend_on_the_parts() -> None:
     assert list(fade.delivered_in_parts([])) == []
 
 
+def test_a_face_at_rest_needs_no_way_there() -> None:
+    """If it rounds to the neutral one, in any channel and either direction."""
+    pose = np.zeros((1, 13))
+    for k, sign in ((0, 1), (12, -1)):
+        motion = np.tile(pose, (20, 1))
+        motion[-1, k] = 0.46 * sign
+        assert len(fade.delivered(motion)) == 20
+        motion[-1, k] = 0.54 * sign
+        assert len(fade.delivered(motion)) == 32
+
+
 # ---- The library
 
 
