@@ -7,7 +7,7 @@ import wave
 import zipfile
 from dataclasses import replace
 from pathlib import Path
-from typing import Dict, Iterable, List, Mapping, Sequence, Tuple
+from typing import Dict, Iterable, List, Mapping, Tuple
 
 import numpy as np
 
@@ -159,17 +159,15 @@ def write_episode(folder: Path, item: Episode) -> None:
         for s in item.segments))
 
 
-def random_hearing(seed: int = 0, units: int = 8, memories: Sequence[Memory] = (Memory(2, 1, 1),)) -> HearingModel:
-    """A network with random weights whose frames stay within what a mouth can do."""
-    random = np.random.default_rng(seed)
+def random_hearing(seed: int = 0) -> HearingModel:
+    """A network of one block with random weights whose frames stay within what a mouth can do."""
+    random, units, block = np.random.default_rng(seed), 8, Memory(2, 1, 1)
 
     def array(*shape: int) -> np.ndarray:
         return random.normal(scale=0.3, size=shape).astype(np.float32)
 
-    blocks = range(len(memories))
     return HearingModel(
-        memories=tuple(memories), dense=tuple(array(units, units if k else INPUTS) for k in blocks),
-        bias=tuple(array(units) for _ in blocks), memory=tuple(array(units, item.taps) for item in memories),
+        memories=(block,), dense=(array(units, INPUTS),), bias=(array(units),), memory=(array(units, block.taps),),
         last=array(units, units), last_bias=array(units), class_weight=array(len(CLASSES), units),
         class_bias=array(len(CLASSES)), closed_weight=array(units), closed_bias=array(1),
         fap_weight=array(CHANNELS, units), fap_bias=array(CHANNELS), classes=CLASSES,
