@@ -5,11 +5,15 @@
 #ifndef LABIAL_TEST_SUITE_H
 #define LABIAL_TEST_SUITE_H
 
+#include <math.h>
+#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <setjmp.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
 #include <cmocka.h>
 
 #include "fixture.h"

@@ -3,11 +3,6 @@
  * and counts in 64 bits: lost, late and doubled packets, clocks that jitter, stand still and wrap, cancels.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "labial/beside.h"
 
 enum { HOLD = LABIAL_BESIDE_HOLD, EASE = LABIAL_BESIDE_EASE, OUTPUTS = 3, ROOM = 64, RATE = 24000, STEP = RATE / 50 };

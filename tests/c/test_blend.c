@@ -2,13 +2,8 @@
  * test_blend.c - frames of speech and laughter made one: the equation of labial/blend.h, and closures that stay closed.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "labial/blend.h"
 #include "labial/faps.h"
-#include "labial/labial.h"
 
 enum { JAW = 0, UPPER = 3, LOWER = 4 };
 

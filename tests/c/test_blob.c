@@ -2,11 +2,6 @@
  * test_blob.c - models as blobs: the serialiser of the fixture writes them from the description in labial/blob.h.
  */
 #include "suite.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-#include "fixture.h"
 #include "labial/blob.h"
 
 #define ROOM 65536

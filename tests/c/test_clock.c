@@ -2,9 +2,6 @@
  * test_clock.c - the loudspeaker's clock (labial/clock.h), against one that keeps every sound and its begin, in fractions.
  */
 #include "suite.h"
-
-#include <string.h>
-
 #include "labial/clock.h"
 
 enum { SOUNDS = 400 };

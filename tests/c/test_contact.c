@@ -3,9 +3,6 @@
  * random streams against oracle_steps.c, which puts contact upon the whole stream phoneme by phoneme.
  */
 #include "suite.h"
-
-#include <string.h>
-
 #include "oracle.h"
 #include "shape.h"
 #include "units.h"

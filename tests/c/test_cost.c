@@ -5,9 +5,6 @@
  * against counted instructions on the boards (tests/device/model_cost.c).
  */
 #include "suite.h"
-
-#include <string.h>
-
 #include "laughter_synthetic.h"
 #include "speech_en.h"
 

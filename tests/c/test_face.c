@@ -3,11 +3,6 @@
  * leaves out, sounds, limits of acceleration and other rates among it.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "fixture.h"
 #include "labial/face.h"
 
 enum {

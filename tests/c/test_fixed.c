@@ -3,10 +3,6 @@
  */
 #include "suite.h"
 
-#include <math.h>
-
-#include "fixture.h"
-
 /* Header and division twice: once for cores with 64-bit products, once for those without. */
 #define LABIAL_NARROW_MULTIPLY 0
 #include "fixed.h"

@@ -3,13 +3,7 @@
  * blocks of any length; their times; the end, a cancel and a restart; wrong calls.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "drawn.h"
-#include "fixture.h"
 #include "hear_fixture.h"
 #include "hear_parts.h"
 #include "hears.h"

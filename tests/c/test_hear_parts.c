@@ -6,11 +6,6 @@
  * precision: energies of bands, the level that they are relative to, and sounds that have neither.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "hear_convert_table.h"
 #include "hear_parts.h"
 

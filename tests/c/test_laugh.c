@@ -2,12 +2,6 @@
  * test_laugh.c - laughs of a wanted length: exact totals, no state but the caller's, phonemes that the model has.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "labial/labial.h"
-#include "fixture.h"
 #include "labial/laugh.h"
 #include "laugh_table.h"
 #include "laughs.h"

@@ -4,13 +4,6 @@
  */
 #include "suite.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-#include "fixture.h"
-#include "labial/labial.h"
-#include "labial/names.h"
-
 #define ANY LABIAL_LABELS_AUTO
 #define B 4     /* the phoneme of "B" */
 #define AA 1    /* and of "AA", in ARPABET alone */

@@ -7,8 +7,6 @@
  */
 #include "suite.h"
 
-#include <string.h>
-
 static fixture_model_t f; /* what TRY() changes */
 
 SETUP(setup)

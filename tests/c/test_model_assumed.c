@@ -4,12 +4,7 @@
  * be, so that nothing but the rule for that member refuses it.
  */
 #include "suite.h"
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "../proof/assumed.h"
-#include "fixture.h"
 
 #define MANY 256 /* more than what counts have room for, of what a byte counts */
 

@@ -5,13 +5,8 @@
 #include "suite.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "fixture.h"
 #include "labial/faps.h"
-#include "labial/labial.h"
-#include "labial/names.h"
 #include "labial/result.h"
 
 #define ARPABET LABIAL_LABELS_ARPABET

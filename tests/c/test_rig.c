@@ -4,12 +4,6 @@
  */
 #include "suite.h"
 
-#include <math.h>
-#include <string.h>
-
-#include "fixture.h"
-#include "labial/rig.h"
-
 #define FAP3 0
 #define FAP51 3
 #define FAP52 4

@@ -6,10 +6,6 @@
  * and the mixture, not the rounding of costs.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "channels.h"
 #include "oracle.h"
 #include "shape.h"

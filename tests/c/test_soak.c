@@ -16,12 +16,7 @@
  * Nothing beside the structures and their workspaces is ever written to.
  */
 #include "suite.h"
-
-#include <stdio.h>
-#include <string.h>
-
 #include "drawn.h"
-#include "fixture.h"
 #include "hear_fixture.h"
 #include "labial/beside.h"
 #include "labial/face.h"

@@ -6,10 +6,6 @@
  */
 #include "suite.h"
 
-#include <string.h>
-
-#include "fixture.h"
-
 #define COUNT 150
 
 static fixture_model_t plain, rich, slow;

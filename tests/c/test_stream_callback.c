@@ -5,10 +5,6 @@
  */
 #include "suite.h"
 
-#include <string.h>
-
-#include "fixture.h"
-
 #define FRAMES 200
 #define WORKSPACE (LABIAL_WORKSPACE_SIZE(FIXTURE_STRIDE, LABIAL_CHANNELS) / 4)
 

@@ -6,8 +6,6 @@
 #include "suite.h"
 
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 static fixture_model_t rich;
 static fixture_phoneme_t input[80];

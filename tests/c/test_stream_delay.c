@@ -3,9 +3,6 @@
  * delivered LABIAL_DELAY() ticks of taking later, whatever the feeding.
  */
 #include "suite.h"
-
-#include <string.h>
-
 #include "oracle.h"
 
 #define COUNT 200

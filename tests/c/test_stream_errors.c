@@ -3,11 +3,6 @@
  */
 #include "suite.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-#include "fixture.h"
-
 #define COUNT 60
 
 static fixture_model_t plain, rich, slow, laugh, other_rate, older, third, fourth;

@@ -6,13 +6,7 @@
  * foretold in doubles from the twin's frames.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "fade.h"
-#include "fixture.h"
 
 #define COUNT 60
 #define MOST 6000

@@ -7,10 +7,6 @@
  * workspace laid over another, a fade from the wrong pose.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
 #include "oracle.h"
 
 #define COUNT 90

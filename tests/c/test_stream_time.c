@@ -4,8 +4,6 @@
  */
 #include "suite.h"
 
-#include <string.h>
-
 #define MANY 2000
 #define KIND (FIXTURE_ROUNDS(80) + 40) /* phonemes of a stream of one kind */
 

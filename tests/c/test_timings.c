@@ -3,12 +3,6 @@
  * it contains. Each text is given whole, and byte by byte.
  */
 #include "suite.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "labial/labial.h"
 #include "labial/timings.h"
 
 #define LINE_MAX_BYTES 4096

@@ -5,11 +5,6 @@
  * The dense oracle writes W row by row as in the paper and multiplies W' U^-1 W out; none of it knows of diagonals.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <string.h>
-
-#include "fixture.h"
 #include "oracle.h"
 #include "trajectory.h"
 #include "units.h"

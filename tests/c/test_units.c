@@ -3,10 +3,6 @@
  * and by hand what that leaves out.
  */
 #include "suite.h"
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "oracle.h"
 #include "units.h"
 

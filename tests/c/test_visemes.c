@@ -3,12 +3,6 @@
  * the ends of streams, and for bad input.
  */
 #include "suite.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "fixture.h"
 #include "labial/visemes.h"
 
 #define FRAMES 4000

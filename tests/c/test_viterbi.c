@@ -3,10 +3,6 @@
  * oracle_steps.c. Costs are those of labial/model.h.
  */
 #include "suite.h"
-
-#include <string.h>
-
-#include "fixture.h"
 #include "oracle.h"
 #include "viterbi.h"
 

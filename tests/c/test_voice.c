@@ -4,11 +4,6 @@
  * tests/voices/oracle.py compares whole sessions.
  */
 #include "suite.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "labial/voice.h"
 #include "laughter_synthetic.h"
 #include "speech_en.h"
@@ -82,22 +77,8 @@ static void tell_one(const char *text, int64_t start, int64_t end)
     assert_ok(tell());
 }
 
-/* A message of one utterance, and one that is dropped. */
-static void tell_of(const char *utterance, const char *text, int64_t start, int64_t end)
-{
-    message.utterance = name(utterance);
-    tell_one(text, start, end);
-}
-
-static void drop_of(const char *utterance, const char *text, int64_t start, int64_t end)
-{
-    message.utterance = utterance ? name(utterance) : 0;
-    item(text, start, end);
-    assert_int_equal(tell(), LABIAL_CANCELLED);
-}
-
-/* A message of phonemes, written as known() writes them; an end may be left out. */
-static void tell_all(const char *text)
+/* The items of a message, written as known() writes them; an end may be left out. */
+static void items_of(const char *text)
 {
     while (*text) {
         char *at, label[4] = "";
@@ -108,16 +89,24 @@ static void tell_all(const char *text)
         text = at + strcspn(at, ",");
         text += *text ? 2 : 0;
     }
+}
+
+/* A message of texts, the last of which is null, one every `step` milliseconds. */
+static void tell_texts(int64_t start, int64_t step, const char *const *texts)
+{
+    for (; *texts; texts++, start += step)
+        item(*texts, start, -1);
     assert_ok(tell());
 }
 
-/* The characters of a text, 50 ms each. */
+/* The characters of a text of UTF-8, 50 ms each. */
 static void characters(const char *text, int64_t start)
 {
-    static char letters[PLACES][2];
-    for (unsigned i = 0; text[i]; i++) {
-        letters[i][0] = text[i];
-        item(letters[i], start + 50 * i, start + 50 * (i + 1));
+    static char found[PLACES][5];
+    for (unsigned i = 0; *text; i++, text += labial_voice_bytes(text, 5)) {
+        memset(found[i], 0, sizeof found[i]);
+        memcpy(found[i], text, labial_voice_bytes(text, 5));
+        item(found[i], start + 50 * i, start + 50 * (i + 1));
     }
 }
 
@@ -155,41 +144,75 @@ static void play(uint64_t until)
         assert_ok(labial_voice_next(&voice, heard, NULL, faps));
 }
 
-/* ---- Phonemes and visemes ---------------------------------------------------------------------------------------- */
+/* One step: "begin 1000 a" or "begin a", behind the one before, "play 600", "cancel 100", "finish", "done", "not done", or
+ * the message "a: 0-500 M, 500-700 AA". Names may be left out. What should not be accepted is "dropped a: ..." or
+ * "full a: ...". */
+static void take_step(const char *step)
+{
+    unsigned long time = 0;
+    char who[8] = "";
+    if (strncmp(step, "begin", 5) == 0) {
+        const int has_time = sscanf(step, "begin %lu %7s", &time, who) > 0;
+        if (!has_time)
+            (void)sscanf(step, "begin %7s", who);
+        assert_ok(labial_voice_begin(&voice, has_time ? time : LABIAL_VOICE_BEHIND, *who ? name(who) : 0));
+    } else if (sscanf(step, "play %lu", &time) > 0) {
+        play(time);
+    } else if (sscanf(step, "cancel %lu", &time) > 0) {
+        assert_ok(labial_voice_cancel(&voice, (uint32_t)time));
+    } else if (strcmp(step, "finish") == 0) {
+        assert_ok(labial_voice_finish(&voice));
+    } else if (strstr(step, "done")) {
+        assert_int_equal(labial_voice_done(&voice), step[0] == 'd');
+    } else {
+        const int wanted = strncmp(step, "dropped ", 8) == 0 ? LABIAL_CANCELLED
+                           : strncmp(step, "full ", 5) == 0  ? LABIAL_ERROR_FULL
+                                                             : LABIAL_OK;
+        step += wanted == LABIAL_OK ? 0 : strcspn(step, " ") + 1;
+        message.utterance = step[1] == ':' ? labial_voice_identity(step, 1) : 0;
+        items_of(step[1] == ':' ? step + 3 : step);
+        assert_int_equal(tell(), wanted);
+    }
+}
+
+/* Steps with "; " between them. */
+static void follow(const char *steps)
+{
+    while (*steps) {
+        char step[120];
+        const size_t size = strcspn(steps, ";");
+        assert_true(size < sizeof step);
+        memcpy(step, steps, size);
+        step[size] = '\0';
+        take_step(step);
+        steps += size + (steps[size] ? 2 : 0);
+    }
+}
+
+#define assert_follows(steps, wanted) assert_string_equal((follow(steps), known()), wanted)
 
 TEST_AFTER(begin, phonemes_touch_within_their_gap)
 {
-    tell_one("M", 0, 100);
-    tell_one("AA", 101, 200); /* rounding, either way */
-    tell_one("B", 199, 300);
-    tell_one("IY", 302, 400);
-    assert_known("0-101 M, 101-200 AA, 200-300 B, 302-400 IY");
+    assert_follows("0-100 M; 101-200 AA; 199-300 B; 302-400 IY", /* rounding, either way */
+                   "0-101 M, 101-200 AA, 200-300 B, 302-400 IY");
     message.gap = 50;
-    tell_one("S", 450, 500);
-    tell_all("500-520 S, 570-600 AA, 651-700 S, 690-702 T, 701-710 S, 705-720 AA");
-    tell_all("719-719 AA"); /* cuts the one before by no more than rounding does */
-    assert_known("0-101 M, 101-200 AA, 200-300 B, 302-400 IY, 450-500 S, 500-570 S, 570-600 AA, "
-                 "651-690 S, 690-702 T, 702-705 S, 705-720 AA");
+    follow("450-500 S; 500-520 S, 570-600 AA, 651-700 S, 690-702 T, 701-710 S, 705-720 AA");
+    assert_follows("719-719 AA", /* cuts the one before by no more than rounding does */
+                   "0-101 M, 101-200 AA, 200-300 B, 302-400 IY, 450-500 S, 500-570 S, 570-600 AA, "
+                   "651-690 S, 690-702 T, 702-705 S, 705-720 AA");
 }
 
 TEST_AFTER(begin, a_message_replaces_what_was_told_of_its_time)
 {
-    tell_one("M", 0, 9);
-    tell_one("AA", 15, 18);
-    tell_one("B", 16, 20);
-    tell_all("15- F, 10-12 S"); /* in any order */
-    assert_known("0-10 M, 10-12 S, 15-16 F, 16-20 B");
-    tell_one("IY", 0, 500);
-    assert_known("0-500 IY");
+    assert_follows("0-9 M; 15-18 AA; 16-20 B; 15- F, 10-12 S", /* in any order */
+                   "0-10 M, 10-12 S, 15-16 F, 16-20 B");
+    assert_follows("0-500 IY", "0-500 IY");
 }
 
 TEST_AFTER(begin, visemes_last_until_the_next)
 {
-    static const char *const names[] = { "8", "4", "6", "19", "16", "7", "2", "7", "7", "21" };
     message.kind = LABIAL_VOICE_AZURE;
-    for (unsigned i = 0; i < 10; i++)
-        item(names[i], 100 * (int)i, -1);
-    assert_ok(tell());
+    tell_texts(0, 100, (const char *const[]){ "8", "4", "6", "19", "16", "7", "2", "7", "7", "21", NULL });
     assert_known("0-200 OW, 200-300 IH, 300-500 CH, 500-600 W, 600-700 AA, 700-800 UW, 800-900 UW, "
                  "900-1000 P");
     plan_from = 450; /* within a pair, and behind what it depends on */
@@ -197,12 +220,9 @@ TEST_AFTER(begin, visemes_last_until_the_next)
     for (plan_from = 0; plan_from < 1000; plan_from += 50) /* from everywhere the same */
         assert_non_null(strstr(known(), "900-1000 P") ? said : strstr(said, "950-1000 P"));
     plan_from = 0;
-    tell_one("4", 1000, -1);
-    tell_one("1", 1100, -1);
+    tell_texts(1000, 100, (const char *const[]){ "4", "1", NULL });
     assert_non_null(strstr(known(), "1000-1100 EH, 1100-1200 AH"));
-    for (unsigned i = 0; i < 6; i++)
-        item(((const char *const[]){ "22", "", "01", "123", "1a", "-" })[i], 0, -1);
-    assert_ok(tell());
+    tell_texts(0, 0, (const char *const[]){ "22", "", "01", "123", "1a", "-", NULL });
     assert_int_equal(labial_voice_counts(&voice).skipped, 6);
     assert_int_equal(labial_voice_counts(&voice).told, 12);
     assert_int_equal(labial_voice_end(&voice, 0), 1200);
@@ -211,14 +231,8 @@ TEST_AFTER(begin, visemes_last_until_the_next)
 TEST_AFTER(begin, visemes_of_polly)
 {
     message.kind = LABIAL_VOICE_POLLY;
-    item("sil", 0, -1);
-    item("u", 100, -1);
-    item("@", 200, -1);
-    item("sil", 300, -1);
-    item("q", 300, -1);
-    for (unsigned i = 0; i < 5; i++)
-        item(((const char *const[]){ "si", "xil", "sal", "six", "" })[i], 300, -1);
-    assert_ok(tell());
+    tell_texts(0, 100, (const char *const[]){ "sil", "u", "@", "sil", NULL });
+    tell_texts(300, 0, (const char *const[]){ "q", "si", "xil", "sal", "six", "", NULL });
     assert_known("100-200 W, 200-300 AH");
     assert_int_equal(labial_voice_counts(&voice).skipped, 6);
     assert_int_equal(labial_voice_end(&voice, 0), 400);
@@ -348,17 +362,6 @@ TEST_AFTER(begin, characters_that_overlap_and_long_words)
     assert_non_null(strstr(said, "-15000 "));
 }
 
-/* The characters of a text of UTF-8, 50 ms each. */
-static void letters(const char *text, int64_t start)
-{
-    static char found[PLACES][5];
-    for (unsigned i = 0; *text; i++, text += labial_voice_bytes(text, 5)) {
-        memset(found[i], 0, sizeof found[i]);
-        memcpy(found[i], text, labial_voice_bytes(text, 5));
-        item(found[i], start + 50 * i, start + 50 * (i + 1));
-    }
-}
-
 TEST_AFTER(begin, a_blank_that_ends_a_message_still_ends_its_word)
 {
     static const struct {
@@ -381,17 +384,10 @@ TEST_AFTER(begin, a_blank_that_ends_a_message_still_ends_its_word)
         }
         strcpy(apart, known());
         begin_of(LABIAL_VOICE_CHARACTERS);
-        item(cases[i].is_kept ? "Bob " : "Bob", 0, cases[i].is_kept ? 400 : 300);
-        item("may", cases[i].next, cases[i].next + 300);
-        items[0].end = 300 * MS;
-        if (cases[i].is_kept) {
-            items[0].text = "Bob";
-            items[0].size = 3;
+        item("Bob", 0, 300);
+        if (cases[i].is_kept)
             item(" ", 300, 300);
-            labial_voice_item_t last = items[2];
-            items[2] = items[1];
-            items[1] = last;
-        }
+        item("may", cases[i].next, cases[i].next + 300);
         assert_ok(tell());
         assert_known(apart);
     }
@@ -413,7 +409,7 @@ static const char *words_in(const char *text)
     begin_with(PLACES);
     memset(noted, 0, sizeof noted);
     message.kind = LABIAL_VOICE_CHARACTERS;
-    letters(text, 0);
+    characters(text, 0);
     assert_ok(labial_voice_pronounce(&voice, note, noted));
     assert_ok(tell());
     known();
@@ -452,7 +448,7 @@ TEST_AFTER(begin, long_texts_without_blanks_are_forgotten)
 {
     message.kind = LABIAL_VOICE_CHARACTERS;
     for (unsigned i = 0; i < 40; i++) {
-        letters("妈妈爸爸跑步，朋友。", 500 * (int)i);
+        characters("妈妈爸爸跑步，朋友。", 500 * (int)i);
         assert_ok(tell());
         play(500 * (uint64_t)i);
     }
@@ -528,313 +524,168 @@ TEST_AFTER(begin, work_is_linear_in_what_is_told)
     assert_true(reads(PLACES / 4) <= 2 * few + 8);
 }
 
-/* ---- Utterances -------------------------------------------------------------------------------------------------- */
-
 TEST_AFTER(begin, utterances_queue_behind_each_other)
 {
     assert_int_equal(name("a"), 0xe40c292c); /* FNV-1a */
     assert_int_equal(labial_voice_identity(NULL, 7), labial_voice_identity("", 0));
     assert_int_equal(labial_voice_identity("\xcc\x24\x31\xc4", 4), 1); /* whose hash is 0 */
-    tell_of("a", "M", 0, 500);
-    tell_of("b", "S", 0, 100);
-    tell_of("c", "F", 0, 100);
-    tell_of("a", "AA", 500, 700); /* more of the first one: the others come later */
-    assert_known("0-500 M, 500-700 AA, 700-800 S, 800-900 F");
-    tell_of("b", "S", 50, 70);
-    message.utterance = 0; /* the latest one */
-    tell_one("F", 100, 150);
-    assert_known("0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-900 F, 900-950 F");
-    tell_of("b", "S", 100, 300);
-    assert_known("0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-1000 S, 1000-1100 F, 1100-1150 F");
+    assert_follows(
+        "a: 0-500 M; b: 0-100 S; c: 0-100 F; a: 500-700 AA", /* more of the first one: the others come later */
+        "0-500 M, 500-700 AA, 700-800 S, 800-900 F");
+    assert_follows("b: 50-70 S; 100-150 F", /* of the latest one */
+                   "0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-900 F, 900-950 F");
+    assert_follows("b: 100-300 S", "0-500 M, 500-700 AA, 700-750 S, 750-770 S, 800-1000 S, 1000-1100 F, 1100-1150 F");
 }
 
 TEST_AFTER(begin, what_is_heard_is_not_moved)
 {
-    tell_of("a", "M", 0, 500);
-    tell_of("b", "S", 0, 900);
-    play(600);
-    tell_of("a", "AA", 500, 1700); /* late: it is cut where the next one began */
-    assert_known("0-500 M, 500-1400 S");
-    assert_ok(labial_voice_begin(&voice, 2000, name("c"))); /* nor what the caller tells */
-    tell_of("b", "AA", 900, 2700);
-    assert_known("0-500 M, 500-1400 S, 1400-2000 AA");
+    assert_follows("a: 0-500 M; b: 0-900 S; play 600; a: 500-1700 AA", /* late: it is cut where the next one began */
+                   "0-500 M, 500-1400 S");
+    assert_follows("begin 2000 c; b: 900-2700 AA", /* nor what the caller tells */
+                   "0-500 M, 500-1400 S, 1400-2000 AA");
 }
 
 /* A client that feeds a message before it begins to play its sound: the message is of that sound. */
 TEST_AFTER(begin, an_utterance_that_is_told_before_it_begins)
 {
-    tell_one("M", 0, 500);
-    assert_ok(labial_voice_begin(&voice, 0, 0)); /* or nothing of it would be heard */
-    assert_known("0-500 M");
-    assert_ok(labial_voice_begin(&voice, 1000, 0)); /* that was the first one's sound */
-    tell_one("S", 0, 500);
-    assert_ok(labial_voice_finish(&voice));
-    play(2000);
-    tell_one("M", 100, 400);
-    assert_known("0-500 M, 1000-1500 S, 2120-2420 M");
-    play(2200);
-    assert_ok(labial_voice_begin(&voice, 2300, 0));
-    tell_one("AA", 400, 800);
-    assert_known("0-500 M, 1000-1500 S, 2400-2700 M, 2700-3100 AA");
-    assert_ok(labial_voice_finish(&voice));
-    tell_one("S", 100, 400); /* behind it, */
-    play(4000);              /* and heard: what begins now is another one */
-    assert_ok(labial_voice_begin(&voice, 4500, 0));
-    tell_one("M", 0, 500);
-    assert_known("1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M");
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0));
-    tell_one("S", 100, 200);
-    assert_known("1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S");
-    tell_of("a", "F", 200, 300);
-    assert_ok(labial_voice_begin(&voice, 6000, 0)); /* what has a name is moved by it alone */
-    message.utterance = 0;
-    tell_one("M", 0, 500);
-    assert_known("1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
-                 "5200-5300 F, 6000-6500 M");
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0));
-    assert_ok(labial_voice_begin(&voice, 7000, 0)); /* nothing was told that could be moved */
-    tell_one("S", 0, 500);
-    assert_known("1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M, 5100-5200 S, "
-                 "5200-5300 F, 6000-6500 M, 7000-7500 S");
+    assert_follows("0-500 M; begin 0", "0-500 M");                      /* or nothing of it would be heard */
+    assert_follows("begin 1000; 0-500 S; finish; play 2000; 100-400 M", /* that was the first one's sound */
+                   "0-500 M, 1000-1500 S, 2120-2420 M");
+    assert_follows("play 2200; begin 2300; 400-800 AA", "0-500 M, 1000-1500 S, 2400-2700 M, 2700-3100 AA");
+    follow("finish; 100-400 S; play 4000"); /* behind it, and heard: what begins now is another one */
+    assert_follows("begin 4500; 0-500 M", "1000-1500 S, 2400-2700 M, 2700-3100 AA, 3200-3500 S, 4500-5000 M");
+    plan_from = 4000;
+    assert_follows("begin; 100-200 S", "4500-5000 M, 5100-5200 S");
+    assert_follows("a: 200-300 F; begin 6000; 0-500 M", /* what has a name is moved by it alone */
+                   "4500-5000 M, 5100-5200 S, 5200-5300 F, 6000-6500 M");
+    assert_follows("begin; begin 7000; 0-500 S", /* nothing was told that could be moved */
+                   "4500-5000 M, 5100-5200 S, 5200-5300 F, 6000-6500 M, 7000-7500 S");
 }
 
 /* A service that names its answers, and a client that does not know the names: each sound is that of the first answer
  * that waits. */
 TEST_AFTER(begin, named_utterances_that_are_told_before_they_begin)
 {
-    tell_of("a", "M", 0, 500);
-    tell_of("b", "S", 0, 500);
-    tell_of("c", "F", 0, 500);
-    assert_known("0-500 M, 500-1000 S, 1000-1500 F");
-    assert_ok(labial_voice_begin(&voice, 0, 0));
-    assert_known("0-500 M, 500-1000 S, 1000-1500 F");
-    play(800); /* the second one's sound is late */
-    assert_ok(labial_voice_begin(&voice, 900, 0));
-    assert_known("0-500 M, 900-1400 S, 1400-1900 F");
-    tell_of("b", "AA", 500, 700);
-    assert_known("0-500 M, 900-1400 S, 1400-1600 AA, 1600-2100 F");
-    play(2000);
-    assert_ok(labial_voice_begin(&voice, 2200, 0));
-    assert_known("0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F");
-    assert_ok(labial_voice_begin(&voice, 2900, 0)); /* nothing waits */
-    tell_of("d", "S", 0, 500);
-    tell_of("e", "M", 0, 500);
-    assert_known("0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F, 2900-3400 S, 3400-3900 M");
-    play(6000);
-    assert_ok(labial_voice_begin(&voice, 6000, 0)); /* it is over */
-    tell_of("f", "S", 0, 500);
-    assert_known("2900-3400 S, 3400-3900 M, 6000-6500 S");
+    assert_follows("a: 0-500 M; b: 0-500 S; c: 0-500 F", "0-500 M, 500-1000 S, 1000-1500 F");
+    assert_follows("begin 0", "0-500 M, 500-1000 S, 1000-1500 F");
+    assert_follows("play 800; begin 900", "0-500 M, 900-1400 S, 1400-1900 F"); /* the second one's sound is late */
+    assert_follows("b: 500-700 AA", "0-500 M, 900-1400 S, 1400-1600 AA, 1600-2100 F");
+    assert_follows("play 2000; begin 2200", "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F");
+    assert_follows("begin 2900; d: 0-500 S; e: 0-500 M", /* nothing waits */
+                   "0-500 M, 900-1400 S, 1400-1600 AA, 2200-2700 F, 2900-3400 S, 3400-3900 M");
+    assert_follows("play 6000; begin 6000; f: 0-500 S", "2900-3400 S, 3400-3900 M, 6000-6500 S"); /* it is over */
 }
 
 /* Both seem to be heard by now, but the sound of the first one begins later. */
 TEST_AFTER(begin, what_waits_behind_an_utterance_that_is_late_waits_longer)
 {
-    tell_of("a", "M", 0, 100);
-    tell_of("b", "S", 0, 530);
-    tell_of("c", "F", 0, 500);
-    play(620);
-    assert_ok(labial_voice_begin(&voice, 640, name("b")));
-    assert_known("0-100 M, 640-1170 S, 1170-1670 F");
+    assert_follows("a: 0-100 M; b: 0-530 S; c: 0-500 F; play 620; begin 640 b", "0-100 M, 640-1170 S, 1170-1670 F");
 }
 
 TEST_AFTER(begin, what_begins_at_once_after_a_cancel_may_be_told_its_sound)
 {
-    tell_one("M", 0, 500);
-    play(100);
-    assert_ok(labial_voice_cancel(&voice, 100));
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0));
-    tell_of("b", "S", 0, 500);
-    assert_ok(labial_voice_begin(&voice, 400, 0));
-    tell_one("AA", 500, 600);
-    assert_known("400-900 S, 900-1000 AA");
+    assert_follows("0-500 M; play 100; cancel 100; begin; b: 0-500 S; begin 400; b: 500-600 AA",
+                   "400-900 S, 900-1000 AA");
 }
 
 TEST_AFTER(begin, stale_messages_change_nothing)
 {
-    tell_of("a", "M", 0, 500);
-    play(100);
-    assert_ok(labial_voice_cancel(&voice, 100));
-    drop_of("a", "M", 500, 900);
-    drop_of("b", "M", 0, 900); /* of the cancelled answer as well, as it comes before the next begins */
-    drop_of(NULL, "M", 0, 900);
-    assert_ok(labial_voice_begin(&voice, 1000, 0));
-    tell_of("c", "S", 0, 100);
-    drop_of("b", "AA", 0, 900);
-    drop_of("a", "AA", 0, 900);
-    assert_known("1000-1100 S");
+    follow("a: 0-500 M; play 100; cancel 100; dropped a: 500-900 M");
+    follow(
+        "dropped b: 0-900 M; dropped 0-900 M"); /* of the cancelled answer as well, as it comes before the next begins */
+    assert_follows("begin 1000; c: 0-100 S; dropped b: 0-900 AA; dropped a: 0-900 AA", "1000-1100 S");
     assert_int_equal(labial_voice_counts(&voice).dropped, 5);
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("a"))); /* unless the caller says so */
-    tell_of("a", "AA", 0, 100);
-    assert_known("1000-1100 S, 1100-1200 AA");
+    assert_follows("begin a; a: 0-100 AA", "1000-1100 S, 1100-1200 AA"); /* unless the caller says so */
 }
 
 TEST_AFTER(begin, utterances_that_were_not_told_of_yet)
 {
-    static const char *const names[] = { "c", "b", "a" };
-    tell_of("a", "M", 0, 500);
-    assert_ok(labial_voice_begin(&voice, 1000, name("b")));
-    assert_ok(labial_voice_begin(&voice, 2000, 0));
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("c")));
-    for (unsigned i = 0; i < 3; i++)
-        tell_of(names[i], "S", 600, 700);
-    assert_known("0-500 M, 600-700 S, 1600-1700 S, 2600-2700 S");
-    tell_of("b", "F", 700, 5000); /* nobody is queued behind it: the next one begins at 2000 */
-    assert_known("0-500 M, 600-700 S, 1600-1700 S, 1700-2000 F, 2600-2700 S");
-    assert_ok(labial_voice_cancel(&voice, 100));
+    assert_follows("a: 0-500 M; begin 1000 b; begin 2000; begin c; c: 600-700 S; b: 600-700 S; a: 600-700 S",
+                   "0-500 M, 600-700 S, 1600-1700 S, 2600-2700 S");
+    assert_follows("b: 700-5000 F", /* nobody is queued behind it: the next one begins at 2000 */
+                   "0-500 M, 600-700 S, 1600-1700 S, 1700-2000 F, 2600-2700 S");
+    follow("cancel 100");
     assert_int_equal(voice.used, 0);
-    assert_ok(labial_voice_begin(&voice, 0, 0));
-    message.utterance = 0;
-    tell_one("M", 0, 100);
-    assert_known("0-100 M");
-    assert_ok(labial_voice_begin(&voice, 20000, 0)); /* until then the one before is kept */
-    tell_one("S", 0, 500);
-    play(15000);
-    tell_one("S", 500, 600);
+    assert_follows("begin 0; 0-100 M", "0-100 M");
+    follow("begin 20000; 0-500 S; play 15000; 500-600 S"); /* until then the one before is kept */
     assert_int_equal(voice.utterance_count, 2);
 }
 
 TEST_AFTER(begin, an_utterance_that_ended_is_over)
 {
-    tell_of("a", "M", 0, 500);
-    tell_of("b", "S", 0, 500);
+    follow("a: 0-500 M; b: 0-500 S");
     for (unsigned i = 1; i < 200; i++)
         play(100 * i);
-    tell_one("S", 19500, 19900);
-    drop_of("a", "M", 500, 900);
+    follow("b: 19500-19900 S; dropped a: 500-900 M");
     assert_int_equal(voice.utterance_count, 1);
 }
 
 TEST_AFTER(begin, after_the_end_the_next_one_begins)
 {
-    tell_of("a", "M", 0, 500);
-    assert_ok(labial_voice_finish(&voice));
-    tell_one("AA", 500, 600); /* the one that ended goes on */
-    message.utterance = 0;
-    tell_one("S", 0, 100);
-    assert_known("0-500 M, 500-600 AA, 600-700 S");
-    assert_ok(labial_voice_finish(&voice));
-    tell_of("b", "F", 0, 100);
-    assert_known("0-500 M, 500-600 AA, 600-700 S, 700-800 F");
+    assert_follows("a: 0-500 M; finish; a: 500-600 AA; 0-100 S", /* the one that ended goes on */
+                   "0-500 M, 500-600 AA, 600-700 S");
+    assert_follows("finish; b: 0-100 F", "0-500 M, 500-600 AA, 600-700 S, 700-800 F");
     assert_int_equal(voice.utterance_count, 3);
-    assert_ok(labial_voice_finish(&voice));
-    play(5000);
-    assert_int_equal(labial_voice_done(&voice), 1);
-    assert_ok(labial_voice_begin(&voice, 900, 0)); /* and one that began has not ended */
-    assert_int_equal(labial_voice_done(&voice), 0);
+    follow("finish; play 5000; done; begin 900; not done"); /* and one that began has not ended */
 }
 
 TEST_AFTER(begin, an_utterance_ends_where_the_next_begins)
 {
-    tell_one("M", 0, 500);
-    assert_ok(labial_voice_begin(&voice, 300, 0));
-    assert_ok(labial_voice_begin(&voice, 400, 0)); /* the one before has nothing, but it began */
-    tell_one("S", 0, 100);
-    assert_known("0-300 M, 400-500 S");
+    assert_follows("0-500 M; begin 300; begin 400; 0-100 S", /* the one before has nothing, but it began */
+                   "0-300 M, 400-500 S");
     assert_int_equal(voice.utterance_count, 2);
-    assert_ok(labial_voice_begin(&voice, 100, 0));
-    tell_one("F", 0, 50);
-    assert_known("0-100 M, 100-150 F");
-    assert_ok(labial_voice_begin(&voice, 50, 0));
-    assert_ok(labial_voice_begin(&voice, 20, 0)); /* in its place */
-    assert_known("0-20 M");
+    assert_follows("begin 100; 0-50 F", "0-100 M, 100-150 F");
+    assert_follows("begin 50; begin 20", "0-20 M"); /* in its place */
 }
 
 TEST_AFTER(begin, an_utterance_that_was_told_begins_with_its_sound)
 {
-    tell_of("a", "M", 0, 500);
-    tell_of("b", "S", 0, 100);
-    tell_of("c", "F", 0, 100);
-    assert_ok(labial_voice_finish(&voice));
-    assert_ok(labial_voice_begin(&voice, 200, name("a")));
-    assert_known("200-700 M, 700-800 S, 800-900 F");
-    assert_ok(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, name("b"))); /* as it is */
-    assert_ok(labial_voice_begin(&voice, 600, name("b")));
-    assert_known("200-600 M, 600-700 S, 800-900 F");
-    tell_of("b", "S", 100, 400);
-    assert_known("200-600 M, 600-700 S, 700-1000 S, 1000-1100 F");
+    assert_follows("a: 0-500 M; b: 0-100 S; c: 0-100 F; finish; begin 200 a", "200-700 M, 700-800 S, 800-900 F");
+    assert_follows("begin b; begin 600 b", "200-600 M, 600-700 S, 800-900 F"); /* the first changes nothing */
+    assert_follows("b: 100-400 S", "200-600 M, 600-700 S, 700-1000 S, 1000-1100 F");
     assert_int_equal(voice.utterance_count, 3);
-    play(1500);
-    assert_int_equal(labial_voice_done(&voice), 0);
-    play(1600);
-    assert_int_equal(labial_voice_done(&voice), 1);
-    assert_ok(labial_voice_begin(&voice, 3000, name("b"))); /* once more, under the same name */
+    follow("play 1500; not done; play 1600; done; begin 3000 b"); /* once more, under the same name */
     assert_int_equal(voice.utterance_count, 4);
 }
 
 TEST_AFTER(begin, what_waits_gives_way_to_what_begins)
 {
-    tell_of("a", "AA", 0, 3000);
-    tell_of("b", "IY", 0, 1000);
-    assert_ok(labial_voice_begin(&voice, 1000, name("c")));
-    tell_of("c", "S", 0, 500);
-    tell_of("a", "AA", 3000, 4000);
-    assert_known("0-1000 AA, 1000-1500 S");
-    assert_ok(labial_voice_begin(&voice, 1200, 0)); /* before what is known ends */
-    message.utterance = 0;
-    tell_one("M", 0, 100);
-    assert_known("0-1000 AA, 1000-1200 S, 1200-1300 M");
-    assert_ok(labial_voice_begin(&voice, 1100, 0));
-    tell_one("M", 0, 20);
-    assert_known("0-1000 AA, 1000-1100 S, 1100-1120 M");
-    assert_ok(labial_voice_finish(&voice));
-    play(1580);
-    assert_int_equal(labial_voice_done(&voice), 0);
-    play(1600);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_follows("a: 0-3000 AA; b: 0-1000 IY; begin 1000 c; c: 0-500 S; a: 3000-4000 AA", "0-1000 AA, 1000-1500 S");
+    assert_follows("begin 1200; 0-100 M", "0-1000 AA, 1000-1200 S, 1200-1300 M"); /* before what is known ends */
+    assert_follows("begin 1100; 0-20 M", "0-1000 AA, 1000-1100 S, 1100-1120 M");
+    follow("finish; play 1580; not done; play 1600; done");
 }
 
 TEST_AFTER(begin, an_offset_moves_the_ends_too)
 {
     assert_ok(labial_voice_offset(&voice, 300));
-    tell_one("M", 0, 500);
-    assert_ok(labial_voice_begin(&voice, 500, 0));
-    tell_one("S", 0, 500);
-    assert_known("300-800 M, 800-1300 S");
-    assert_ok(labial_voice_finish(&voice));
-    play(1700);
-    assert_int_equal(labial_voice_done(&voice), 0);
-    play(1800);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    assert_follows("0-500 M; begin 500; 0-500 S", "300-800 M, 800-1300 S");
+    follow("finish; play 1700; not done; play 1800; done");
 }
 
 TEST_AFTER(begin, what_is_refused_or_empty_changes_nothing)
 {
     static char text[256];
     memset(text, 'a', sizeof text - 1);
-    tell_one("M", 0, 500);
-    assert_ok(labial_voice_finish(&voice));
-    assert_int_equal(labial_voice_done(&voice), 0);
-    message.utterance = name("b");
-    assert_ok(tell()); /* a last message without items */
-    item("M", 100, 50);
-    assert_ok(tell());
+    follow("0-500 M; finish; not done; b: ; b: 100-50 M"); /* a last message without items */
     assert_int_equal(labial_voice_counts(&voice).skipped, 1);
     message.kind = LABIAL_VOICE_WORDS;
     for (unsigned i = 0; i < PLACES; i++)
         item(text, 10 * (int64_t)i, 10 * (int64_t)i + 10);
     assert_int_equal(tell(), LABIAL_ERROR_FULL);
     assert_int_equal(voice.utterance_count, 1);
-    play(1000);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    follow("play 1000; done");
 }
 
 TEST_AFTER(begin, there_are_only_so_many_utterances)
 {
-    char text[2] = "a";
-    for (; text[0] < 'a' + LABIAL_VOICE_UTTERANCES; text[0]++)
-        tell_of(text, "M", 0, 100);
-    message.utterance = name(text);
-    item("M", 0, 100);
-    assert_int_equal(tell(), LABIAL_ERROR_FULL);
+    char step[] = "a: 0-100 M";
+    for (; step[0] < 'a' + LABIAL_VOICE_UTTERANCES; step[0]++)
+        follow(step);
+    follow("full 0: 0-100 M");
     assert_int_equal(labial_voice_begin(&voice, 5, name("0")), LABIAL_ERROR_FULL);
     assert_int_equal(labial_voice_begin(&voice, LABIAL_VOICE_BEHIND, 0), LABIAL_ERROR_FULL);
-    assert_ok(labial_voice_finish(&voice));
-    message.utterance = 0;
-    item("M", 0, 100);
-    assert_int_equal(tell(), LABIAL_ERROR_FULL);
-    play(4000); /* the first ones are over */
-    play(9000);
-    tell_one("M", 0, 100);
+    follow("finish; full 0-100 M; play 4000; play 9000; 0-100 M"); /* the first ones are over */
 }
 
 /* ---- Times of messages ------------------------------------------------------------------------------------------- */
@@ -854,29 +705,22 @@ TEST_AFTER(begin, joined_messages_that_begin_again)
 {
     assert_ok(labial_voice_phoneme(&voice, SPEECH_EN_M, 100, 400));
     message.times = LABIAL_VOICE_JOINED;
-    message.utterance = name("a");
-    tell_all("100-200 M, 200-400 AA"); /* the program's own phonemes do not count */
-    tell_all("400-500 M, 500-700 AA"); /* goes on, */
-    tell_all("0-150 S, 150-300 F");    /* begins again, */
-    tell_one("S", 300, 400);           /* and goes on from there */
-    tell_one("F", 0, 100);
-    tell_one("F", 0, 100); /* comes twice */
-    assert_known("100-200 M, 200-400 AA, 400-500 M, 500-700 AA, 700-850 S, 850-1000 F, 1000-1100 S, "
-                 "1100-1200 F");
+    follow(
+        "a: 100-200 M, 200-400 AA; a: 400-500 M, 500-700 AA"); /* the program's own phonemes do not count; goes on, */
+    follow("a: 0-150 S, 150-300 F; a: 300-400 S");             /* begins again, and goes on from there */
+    assert_follows("a: 0-100 F; a: 0-100 F",                   /* comes twice */
+                   "100-200 M, 200-400 AA, 400-500 M, 500-700 AA, 700-850 S, 850-1000 F, 1000-1100 S, "
+                   "1100-1200 F");
     assert_int_equal(labial_voice_counts(&voice).dropped, 1);
-    tell_one("S", 5, 24); /* less than rounding, and nothing at all */
-    tell_one("S", 0, 0);
-    tell_one("S", -0, -1);
+    follow("a: 5-24 S; a: 0-0 S; a: 0- S"); /* less than rounding, and nothing at all */
     assert_int_equal(voice.utterances[0].base, 1100 * MS);
 }
 
 TEST_AFTER(begin, joined_messages_fill_gaps)
 {
     message.times = LABIAL_VOICE_JOINED;
-    tell_one("M", 0, 200);
-    tell_all("400-600 S, 600-700 T");
-    tell_one("AA", 195, 405); /* late, and rounded */
-    assert_known("0-195 M, 195-400 AA, 400-600 S, 600-700 T");
+    assert_follows("0-200 M; 400-600 S, 600-700 T; 195-405 AA", /* late, and rounded */
+                   "0-195 M, 195-400 AA, 400-600 S, 600-700 T");
 }
 
 TEST_AFTER(begin, joined_messages_begin_again_after_what_is_forgotten)

@@ -2,13 +2,6 @@
  * test_words.c - texts to phonemes (labial/words.h) against the exporter's reference, and texts that are no text.
  */
 #include "suite.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "fixture.h"
-#include "labial/labial.h"
 #include "labial/words.h"
 #include "words_cases.h"
 #include "words_en.h"

@@ -3,11 +3,6 @@
  * bridged gaps, offsets, characters.
  */
 #include "suite.h"
-
-#include <string.h>
-
-#include "fixture.h"
-#include "labial/labial.h"
 #include "labial/words.h"
 #include "words_cases.h"
 #include "words_en.h"
