@@ -304,33 +304,6 @@ TEST_AFTER(begin, a_connection_begins_with_other_numbers)
     assert_shows(320, 1);
 }
 
-/* Catches a servo that jumps after lost packets, after a cancel, at the first frame, or with frames that are no motion; a
- * limit of another output; and a frame that is given up on the way. */
-TEST(no_value_changes_by_more_than_its_limit)
-{
-    static const uint8_t limits[OUTPUTS] = { 1, 31, 255 };
-    for (unsigned loses = 0; loses < 100; loses += 33) {
-        uint8_t values[OUTPUTS], last[OUTPUTS];
-        assert_int_equal(begin(NULL), 0);
-        for (unsigned i = 0; i < OUTPUTS; i++)
-            assert_ok(labial_beside_limit(&player, i, limits[i]));
-        assert_int_equal(feed(0, 0, 0), 0);
-        memcpy(last, at_rest, OUTPUTS);
-        for (unsigned k = 0; k < 3000; k++) {
-            if (below(100) >= loses)
-                (void)feed(!below(50), 1 + below(20), k);
-            session = (uint16_t)(session + !below(200));
-            assert_true(labial_beside_tick(&player, k * STEP, values) >= 0);
-            for (unsigned i = 0; i < OUTPUTS; i++)
-                assert_true(abs(values[i] - last[i]) <= limits[i]);
-            memcpy(last, values, OUTPUTS);
-        }
-        for (unsigned k = 0; k < 1 + HOLD + EASE + 255; k++)
-            (void)labial_beside_tick(&player, 3000 * STEP, values);
-        assert_memory_equal(values, at_rest, OUTPUTS);
-    }
-}
-
 /* Catches changes in units that are rounded to more than the servo bears. */
 TEST(changes_have_units)
 {

@@ -156,31 +156,6 @@ TEST(closures_are_kept)
     }
 }
 
-/* Would catch lips that are held always, which the test above would not mind: vowels laugh, corners laugh anywhere. */
-TEST(what_is_free_laughs)
-{
-    int16_t speech[LABIAL_CHANNELS] = { 0 }, laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS];
-    const labial_blend_t *blend = &labial_blend_default;
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        laugh[c] = 1000;
-    assert_ok(labial_blend(blend, 256, 256, speech, laugh, out)); /* at rest */
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        const unsigned fap = labial_fap_numbers[c];
-        const int corner = fap == 53 || fap == 54 || fap >= 59, push = fap == 16 || fap == 17;
-        assert_int_equal(out[c], corner ? 898 : push ? 602 : 0);
-    }
-    laugh[JAW] = -1000; /* the jaw may close at any time */
-    assert_ok(labial_blend(blend, 256, 256, speech, laugh, out));
-    assert_int_equal(out[JAW], -352);
-    laugh[JAW] = 1000;
-    speech[UPPER] = (int16_t)(blend->dropped - blend->open - 1);
-    speech[LOWER] = (int16_t)-blend->dropped;
-    assert_ok(labial_blend(blend, 256, 256, speech, laugh, out)); /* a vowel */
-    assert_int_equal(out[JAW], 352);
-    assert_int_equal(out[LOWER], -270 + (1270 * 90 + 128) / 256);
-    assert_true(out[UPPER] > speech[UPPER] + 300);
-}
-
 /* Corners at full intensity, whose share of the way is 1 - words (256 - share) / 2^16 exactly: rounded to the nearest FAP
  * unit, half of one towards the laugh. Of each odd share, every remainder of 2^16 comes once. Would catch a half that is
  * off by the least that can be. */
@@ -203,31 +178,6 @@ TEST(what_is_free_is_rounded_to_the_nearest)
             const double gone = way * (1.0 - words * (256.0 - shares[i]) / 65536.0);
             const unsigned c = corners[i];
             assert_int_equal(c % 2 ? out[c] - speech[c] : speech[c] - out[c], (int)floor(gone + 0.5));
-        }
-    }
-}
-
-static int toward(int from, int value, int to)
-{
-    return to < from ? from - value : value - from;
-}
-
-/* Would catch a ramp that turns back. */
-TEST(monotone_in_intensity_and_words)
-{
-    int16_t speech[LABIAL_CHANNELS], laugh[LABIAL_CHANNELS], out[LABIAL_CHANNELS], before[LABIAL_CHANNELS];
-    draw_from(4);
-    for (int i = 0; i < 600; i++) {
-        const labial_blend_t blend = i % 2 ? labial_blend_default : draw_table();
-        const unsigned fixed = (unsigned)between(0, 256);
-        draw_frame(speech, i % 3 ? 500 : 32767);
-        draw_frame(laugh, i % 3 ? 500 : 32767);
-        memcpy(before, speech, sizeof before);
-        for (unsigned step = 0; step <= 256; step++) {
-            labial_blend(&blend, i % 4 < 2 ? step : fixed, i % 4 < 2 ? fixed : 256u - step, speech, laugh, out);
-            for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-                assert_true(toward(speech[c], out[c], laugh[c]) >= toward(speech[c], before[c], laugh[c]));
-            memcpy(before, out, sizeof before);
         }
     }
 }

@@ -71,33 +71,6 @@ static int32_t tick(int result)
 
 /* ---- By hand ----------------------------------------------------------------------------------------------------- */
 
-/* Holds 5 ticks, then a sixth of the way, a fifth of the rest, ...; says when it has come to rest. */
-TEST(face_holds_and_rests)
-{
-    static const int32_t way[EASE] = { 1650, 1600, 1550, 1500, 1450, 1400 };
-    for (unsigned round = 0; round < 2; round++) {
-        begin(0, 0, 0);
-        give(1600);
-        tick(LABIAL_OK);
-        give(1700);
-        assert_int_equal(tick(LABIAL_OK), 1700);
-        if (round == 0) {
-            for (unsigned i = 0; i < HOLD; i++)
-                assert_int_equal(tick(LABIAL_STARVED), 1700);
-        } else {
-            give(1900); /* and is not shown */
-            assert_ok(labial_face_cancel(&face, 20 * EASE));
-        }
-        for (unsigned i = 0; i < EASE; i++)
-            assert_int_equal(tick(LABIAL_STARVED), way[i]);
-        assert_int_equal(tick(LABIAL_DONE), 1400);
-        assert_ok(labial_face_cancel(&face, 20 * EASE));
-        assert_int_equal(tick(LABIAL_DONE), 1400);
-        give(1700); /* and goes on */
-        assert_int_equal(tick(LABIAL_OK), 1700);
-    }
-}
-
 /* An output that follows sounds does so within the same limits, and goes to rest like any other. */
 TEST(sounds_move_it)
 {
@@ -146,26 +119,6 @@ TEST(look_ahead_is_that_of_the_rig)
                 assert_int_equal(values[0], value);
             }
         }
-    }
-}
-
-/* Outputs follow one after the other, each in the time that it is given, also one with a limit of acceleration. */
-TEST(soft_start_attaches_one_by_one)
-{
-    outputs[0] = outputs[1] = outputs[2] = jaw(0, 0);
-    outputs[2].acceleration = 100;
-    rig.count = 3;
-    assert_ok(labial_face_init(&face, &rig, 50, 1, memory, sizeof memory));
-    assert_int_equal(labial_face_attached(&face), 3);
-    assert_ok(labial_face_soft_start(&face, 4));
-    for (unsigned i = 0; i < 20; i++) {
-        const unsigned attached = 1 + i / 4;
-        assert_int_equal(labial_face_attached(&face), attached < 3 ? attached : 3);
-        give(1800);
-        labial_face_tick(&face, values);
-        for (unsigned k = 0; k < 2; k++)
-            assert_int_equal(values[k], i >= 1 && i >= 4 * (k + 1) ? 1800 : JAW_REST);
-        assert_true(i < 12 ? values[2] == JAW_REST : values[2] > JAW_REST);
     }
 }
 

@@ -8,12 +8,11 @@
 
 #define COUNT 150
 
-static fixture_model_t plain, rich, slow;
+static fixture_model_t rich, slow;
 static fixture_phoneme_t input[COUNT];
 
 SETUP(setup)
 {
-    fixture_plain(&plain);
     fixture_rich(&rich);
     fixture_slow(&slow);
     return 0;
@@ -94,19 +93,6 @@ TEST(two_streams_do_not_disturb_each_other)
         fixture_close(&alone[i]);
         fixture_close(&together[i]);
     }
-}
-
-TEST(a_stream_without_phonemes_is_done_at_once)
-{
-    fixture_host_t host;
-    const labial_model_t *model = &plain.model;
-    assert_ok(fixture_open(&host, &model, 1));
-    assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
-    fixture_end(&host);
-    assert_int_equal(fixture_tick(&host), LABIAL_DONE);
-    assert_int_equal(host.recorder.count, 0);
-    assert_null(host.complaint);
-    fixture_close(&host);
 }
 
 SUITE(setup, NULL)

@@ -150,6 +150,8 @@ static void cancel(actor_t *actor)
     assert_int_equal(labial_restart(&actor->stream), LABIAL_ERROR_STATE); /* the stream has not ended */
     assert_ok(labial_cancel(&actor->stream, 100));
     assert_int_equal(labial_push(&actor->stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_use(&actor->stream, &rich.model), LABIAL_ERROR_STATE);
+    assert_int_equal(labial_room(&actor->stream), 0);
 }
 
 static void cancel_twice(actor_t *actor)

@@ -96,47 +96,6 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
     }
 }
 
-/* Would catch an overshoot, a turn on the way and a jump at its beginning. */
-TEST(easing_is_monotonic_and_even)
-{
-    static const unsigned lengths[] = { 1, 2, 3, 7, 10, 50, 333, 1000 };
-    unsigned moved = 0;
-    for (unsigned i = 0; i < COUNT_OF(lengths); i++) {
-        const int n = (int)lengths[i];
-        fixture_host_t host;
-        begin(&host, FIXTURE_RATE, 40 + i);
-        fixture_cancel(&host, lengths[i] * 20);
-        assert_int_equal(drain(&host), lengths[i]);
-        for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-            const int pose = host.recorder.frames[39 + i][c];
-            moved += abs(pose) > 50;
-            for (size_t t = 40 + i; t < host.recorder.count; t++) {
-                const int last = host.recorder.frames[t - 1][c], now = host.recorder.frames[t][c];
-                if (abs(now) > abs(last) || (now > 0 && pose < 0) || (now < 0 && pose > 0))
-                    fail_msg("%d frames, channel %u: from %d to %d", n, c, last, now);
-                if (abs(now - last) > 2 * abs(pose) / n + 1)
-                    fail_msg("%d frames, channel %u: %d in one of them from a pose of %d", n, c, now - last, pose);
-            }
-        }
-        fixture_close(&host);
-    }
-    assert_true(moved > 10); /* there was something to ease */
-}
-
-TEST(nothing_is_accepted_after_a_cancel)
-{
-    fixture_host_t host;
-    begin(&host, FIXTURE_RATE, 30);
-    fixture_cancel(&host, 100);
-    assert_int_equal(labial_room(host.stream), 0);
-    assert_int_equal(labial_push(host.stream, FIXTURE_A, 100), LABIAL_ERROR_STATE);
-    assert_int_equal(labial_use(host.stream, &rich.model), LABIAL_ERROR_STATE);
-    assert_int_equal(drain(&host), 5);
-    const labial_latency_t latency = labial_latency(host.stream);
-    assert_true(latency.frames == 0 && latency.milliseconds == 0 && latency.phonemes == 0);
-    fixture_close(&host);
-}
-
 /* Would catch an ease from a pose that never was: all there is to ease is the neutral face. */
 TEST(cancel_before_the_first_frame_stays_neutral)
 {

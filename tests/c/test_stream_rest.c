@@ -155,23 +155,6 @@ TEST(a_stream_begins_and_ends_at_rest)
     assert_true(opened >= FIXTURE_ROUNDS(10));
 }
 
-/* "unless it is the neutral one already": to either side of it, in either direction. */
-TEST(a_face_at_rest_stays_where_it_is)
-{
-    for (int way = -1; way <= 1; way += 2)
-        for (int beyond = 0; beyond <= 1; beyond++) {
-            fixture_phoneme_t still = { 100, FIXTURE_A, 0 };
-            open(&face, 0);
-            push(&face, &still, 1);
-            (void)labial_end(&face.stream);
-            while (labial_latency(&face.stream).frames > 0)
-                assert_true(tick(&face) < LABIAL_DONE);
-            memset(face.stream.fade.pose, 0, sizeof face.stream.fade.pose);
-            face.stream.fade.pose[LABIAL_CHANNELS - 1] = (int16_t)(way * 8 - (way > 0) + way * beyond); /* Q4 */
-            assert_int_equal(tick(&face), beyond ? LABIAL_OK : LABIAL_DONE);
-        }
-}
-
 /* Nothing follows what never moved. */
 TEST(a_face_that_stays_at_rest_is_done)
 {

@@ -1,8 +1,6 @@
 /*
- * test_trajectory.c - equation 3 in integers, against a dense solution in doubles of the same weights and means, and
- * against oracle_trajectory.c where the backward pass begins before the end; and its quotients against exact ones.
- *
- * The dense oracle writes W row by row as in the paper and multiplies W' U^-1 W out; none of it knows of diagonals.
+ * test_trajectory.c - equation 3 in integers, against oracle_trajectory.c, which solves it in doubles: whole solutions, and
+ * such of which the backward pass begins before the end; and its quotients against exact ones.
  */
 #include "suite.h"
 #include "oracle.h"
@@ -20,64 +18,8 @@ static uint8_t path[FRAMES];
 static int16_t target[FRAMES];
 static uint16_t contact[FRAMES]; /* bit 0 */
 static int32_t gain[FRAMES];     /* articulation, in 1/256 */
-static double matrix[FRAMES][FRAMES], right[FRAMES];
 static double worst, sum_of_squares;
 static unsigned long compared;
-
-/* Adds one row of W, three coefficients around frame t, with its precision and mean. */
-static void add_row(unsigned t, const double *coefficients, double precision, double mean)
-{
-    for (int i = -1; i <= 1; i++) {
-        if (coefficients[i + 1] == 0.0)
-            continue;
-        for (int k = -1; k <= 1; k++)
-            if (coefficients[k + 1] != 0.0)
-                matrix[(int)t + i][(int)t + k] += coefficients[i + 1] * coefficients[k + 1] * precision;
-        right[(int)t + i] += coefficients[i + 1] * precision * mean;
-    }
-}
-
-static void eliminate(unsigned n)
-{
-    for (unsigned i = 0; i < n; i++)
-        for (unsigned k = i + 1; k < n; k++) {
-            const double factor = matrix[k][i] / matrix[i][i];
-            for (unsigned j = i; factor != 0.0 && j < n; j++)
-                matrix[k][j] -= factor * matrix[i][j];
-            right[k] -= factor * right[i];
-        }
-    for (unsigned i = n; i-- > 0;) {
-        for (unsigned k = i + 1; k < n; k++)
-            right[i] -= matrix[i][k] * right[k];
-        right[i] /= matrix[i][i];
-    }
-}
-
-/* The exact trajectory, in `right`. */
-static void solve_densely(unsigned length)
-{
-    static const double still[3] = { 0, 1, 0 }, delta[3] = { -0.5, 0, 0.5 }, delta2[3] = { 1, -2, 1 };
-    memset(matrix, 0, sizeof matrix);
-    memset(right, 0, sizeof right);
-    for (unsigned t = 0; t < length; t++) {
-        const labial_state_t *s = &states[path[t]];
-        const double g = gain[t] / 256.0;
-        double hold = fixture_weight_value(s->hold);
-        const double share = floor((s->share + (s->share >= 128)) * gain[t] / 16.0) / 4096.0; /* to 12 bits */
-        const double held = (channel.centre + s->mean) * g;                                   /* FAP */
-        if (contact[t]) { /* at the target alone, no farther out, and by no less than `contact_weight` */
-            hold = fmax(hold, fixture_weight_value(channel.contact_weight));
-            add_row(t, still, hold, (channel.centre + target[t]) * fmin(g, 1.0));
-        } else {
-            add_row(t, still, hold, held + share * (target[t] - s->mean));
-        }
-        if (t > 0 && t + 1 < length) {
-            add_row(t, delta, 4.0 * fixture_weight_value(s->weight[0]), fixture_motion(&channel, s, 0, gain[t]));
-            add_row(t, delta2, fixture_weight_value(s->weight[1]), fixture_motion(&channel, s, 1, gain[t]));
-        }
-    }
-    eliminate(length);
-}
 
 /* The limits that the solver is promised: labial_model_check() itself says whether a test keeps to them. */
 static void require_accepted(const char *what, unsigned round)
@@ -151,12 +93,12 @@ static void compare(unsigned length, const char *what, unsigned round)
     go_forward(length, 1 + round % 9, factors);
     assert_int_equal(factors[-1].q, 0x3c3c3c3c);
     assert_int_equal(factors[length].q, 0x3c3c3c3c);
-    solve_densely(length);
+    oracle_trajectory(&channel, path, target, contact, 0, gain, length, NULL, wanted);
     memset(motion, 0x77, sizeof motion);
     labial_trajectory_back(factors + length - 1, 0, length, length - 1, FRAMES, motion);
     for (unsigned t = 0; t < length; t++)
-        judge(what, round, length, t, motion[t], right[t]);
-    for (unsigned i = (unsigned)length; i < FRAMES; i++)
+        judge(what, round, length, t, motion[t], wanted[t]);
+    for (unsigned i = length; i < FRAMES; i++)
         assert_int_equal(motion[i], 0x7777); /* other frames are not its own */
     for (unsigned t = 0; t < length; t++)
         start[t] = t + window < length ? t + window : length - 1;
@@ -176,11 +118,6 @@ static uint8_t not_above(double value)
     return (uint8_t)code;
 }
 
-static double least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 static const uint8_t shares[] = { 0, 127, 128, 255, 1, 254, 64, 200 };
 
 /* Random states: holds from 8 to `hold`, of any size alike or only these two; stiffness up to `stiff` times the hold, or
@@ -194,10 +131,10 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         const double r = only_bounds ? fixture_below(random, 2) : fixture_below(random, 1001) / 1000.0;
         const double own = LABIAL_WEIGHT_MIN * pow(hold / LABIAL_WEIGHT_MIN, r);
         s->hold = not_above(own + 1e-6);
-        weakest = least(weakest, fixture_weight_value(s->hold));
-        s->weight[1] = not_above(
-            least(room, fixture_weight_value(s->hold) * stiff *
-                            (only_bounds ? 1.0 : pow(1000.0, -(double)fixture_below(random, 1001) / 1000.0))));
+        weakest = fmin(weakest, fixture_weight_value(s->hold));
+        s->weight[1] =
+            not_above(fmin(room, fixture_weight_value(s->hold) * stiff *
+                                     (only_bounds ? 1.0 : pow(1000.0, -(double)fixture_below(random, 1001) / 1000.0))));
         s->weight[0] =
             only_bounds && fixture_below(random, 2) ? s->weight[1] : (uint8_t)fixture_below(random, s->weight[1] + 1u);
         s->share = fixture_below(random, 2) ? shares[fixture_below(random, 8)] : (uint8_t)fixture_below(random, 256);
@@ -208,8 +145,8 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
         const double all = pull * LABIAL_PULL_MAX * weakest / 4.0, part = fixture_below(random, 3) / 2.0;
         const double d = fixture_weight_value(s->weight[0]), dd = fixture_weight_value(s->weight[1]);
         /* all states have the same part of it, of the same sign or not */
-        mean[q][0] = least(LABIAL_POSITION_MAX, all * (q ? 0.5 : part) / (d > 0 ? d : 1));
-        mean[q][1] = least(LABIAL_POSITION_MAX, all * (q ? 0.5 : least(part, 0.5)) / (dd > 0 ? dd : 1));
+        mean[q][0] = fmin(LABIAL_POSITION_MAX, all * (q ? 0.5 : part) / (d > 0 ? d : 1));
+        mean[q][1] = fmin(LABIAL_POSITION_MAX, all * (q ? 0.5 : fmin(part, 0.5)) / (dd > 0 ? dd : 1));
         if (q == 0 && part > 0.5)
             mean[q][0] /= 2;
     }
@@ -220,7 +157,7 @@ static void make(fixture_random_t *random, double hold, double stiff, double pul
             most = fmax(most, mean[q][i]);
         *scale = (uint16_t)floor(fmax(most - 0.5, 0) * 256.0 / 127.0);
         for (unsigned q = 0; q < STATES; q++) {
-            const int steps = (int)(*scale ? least(127, floor(fmax(mean[q][i] - 0.5, 0) * 256.0 / *scale)) : 0);
+            const int steps = (int)(*scale ? fmin(127, floor(fmax(mean[q][i] - 0.5, 0) * 256.0 / *scale)) : 0);
             states[q].motion[i] = (int8_t)(fixture_below(random, 2) ? -steps : steps);
         }
     }
@@ -258,41 +195,20 @@ static void walk(fixture_random_t *random, int restless, int extreme)
     }
 }
 
-/* A row after which the frame before it, which nothing holds, has the row sum g, and D is d: with c = 2^24 in Q16. */
-static void divide(uint32_t g, uint32_t d, int32_t pull, labial_solver_t *solver, labial_factors_t *factors)
-{
-    labial_terms_t terms = { 0 };
-    labial_frame_t frame = { 0 };
-    memset(solver, 0, sizeof *solver);
-    solver->row = (int32_t)g;
-    solver->bent = (int32_t)(d - g - ((uint32_t)1 << 24));
-    solver->pull = pull;
-    terms.stiff = 256;
-    labial_trajectory_rows(solver, &terms, &frame, 0, 1, factors + 1);
-}
-
-/* 2^54 / d, to 24 bits, of a `d` of 65 / 64 times 2^30 at least: 2^30 / d times 2^8, which the solver has in 24 bits. */
+/* 2^54 / d, to 24 bits, of an even `d` of 2^30 at least: a pull of 2^30 in Q16 moves a frame that nothing holds, whose row
+ * sum is half of d, and whose D is nearly 2^31. */
 static uint32_t reciprocal_of(uint32_t d)
 {
     labial_factors_t factors[2];
-    labial_solver_t solver;
-    divide((uint32_t)1 << 30, d, 0, &solver, factors);
-    return (uint32_t)solver.k1;
-}
-
-/* The same of a `d` that is even: where a pull of 2^30 moves a frame whose row sum is half of d. */
-static uint32_t reciprocal_of_sum(uint32_t d)
-{
-    labial_factors_t factors[2];
-    labial_solver_t solver;
-    divide(d / 2u, ((uint32_t)1 << 31) - 2u, (int32_t)1 << 30, &solver, factors);
+    labial_solver_t solver = { 0 };
+    labial_terms_t terms = { 0 };
+    labial_frame_t frame = { 0 };
+    solver.row = (int32_t)(d / 2u);
+    solver.bent = (int32_t)(((uint32_t)1 << 31) - 2u - d / 2u - ((uint32_t)1 << 24));
+    solver.pull = (int32_t)1 << 30;
+    terms.stiff = 256;
+    labial_trajectory_rows(&solver, &terms, &frame, 0, 1, factors + 1);
     return (uint32_t)factors[0].q / 2u;
-}
-
-/* |1 - d r| at the worse end of the interval, at which it is largest. */
-static double guess_error(double from, double to, double r)
-{
-    return fmax(fabs(1.0 - from * r), fabs(to * r - 1.0));
 }
 
 /* The error that Newton's steps have to square, of the best guess that 8 bits can make for all numbers of an interval. */
@@ -300,7 +216,7 @@ static double least_guess_error(double from, double to)
 {
     double best = 1.0;
     for (unsigned r = 128; r < 256; r++)
-        best = least(best, guess_error(from, to, r / 256.0));
+        best = fmin(best, fmax(fabs(1.0 - from * r / 256.0), fabs(to * r / 256.0 - 1.0))); /* at the worse end */
     return best;
 }
 
@@ -319,9 +235,7 @@ TEST(reciprocals_have_24_bits)
             const uint32_t first =
                 block < blocks ? (i << 24) + (block << 15) : ((i + 1u) << 24) - ((block + 1u - blocks) << 15);
             for (unsigned k = 0; k < 512; k += 2) {
-                double lost = 18014398509481984.0 / (first + k) - reciprocal_of_sum(first + k);
-                if (i > 64) /* what the other one sees; both are one function */
-                    lost = fmax(lost, 18014398509481984.0 / (first + k) - reciprocal_of(first + k));
+                const double lost = 18014398509481984.0 / (first + k) - reciprocal_of(first + k);
                 if (lost > most || lost < -0.1)
                     fail_msg("2^54 / %u: %.3f is lost, more than %.3f", first + k, lost, most);
             }
