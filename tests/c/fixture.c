@@ -30,17 +30,20 @@ double fixture_weight_value(uint8_t code)
     return exponent == 0 ? (double)mantissa : (double)((16ul + mantissa) << (exponent - 1u));
 }
 
+/* The code whose value is nearest to one, the lowest of several. */
+static uint8_t nearest_code(double (*value_of)(uint8_t code), double value)
+{
+    unsigned best = 0;
+    for (unsigned code = 1; code < 256; code++)
+        if (fabs(value_of((uint8_t)code) - value) < fabs(value_of((uint8_t)best) - value))
+            best = code;
+    return (uint8_t)best;
+}
+
 /* The nearest weight. */
 static uint8_t weight_code(double value)
 {
-    unsigned best = 0;
-    for (unsigned code = 1; code < 256; code++) {
-        const double error = fixture_weight_value((uint8_t)code) - value;
-        const double least = fixture_weight_value((uint8_t)best) - value;
-        if ((error < 0 ? -error : error) < (least < 0 ? -least : least))
-            best = code;
-    }
-    return (uint8_t)best;
+    return nearest_code(fixture_weight_value, value);
 }
 
 /* Steps of a component's shape; 127 steps are 300 FAP units. */
@@ -81,39 +84,19 @@ static void connect(fixture_model_t *f, unsigned c, unsigned count, unsigned rea
     f->model.predecessor_fours = (uint8_t)(predecessors / 4);
 }
 
-/* Puts the first `count` numbers in ascending order. */
-static void sort(int *numbers, unsigned count)
+static int in_order(const void *a, const void *b)
 {
-    for (unsigned i = 1; i < count; i++)
-        for (unsigned j = i; j > 0 && numbers[j] < numbers[j - 1]; j--) {
-            const int other = numbers[j];
-            numbers[j] = numbers[j - 1];
-            numbers[j - 1] = other;
-        }
+    return *(const int *)a - *(const int *)b;
 }
 
 double fixture_gain_value(uint8_t code)
 {
-    double value = 16 + code % 16;
-    int e;
-    for (e = 12; e < code / 16; e++)
-        value /= 2.0;
-    for (; e > code / 16; e--)
-        value *= 2.0;
-    return value;
+    return ldexp(16 + code % 16, 12 - code / 16);
 }
 
 uint8_t fixture_gain_code(double sigma)
 {
-    const double wanted = 262144.0 / (sigma * 1.41421356237);
-    unsigned nearest = 0;
-    for (unsigned code = 1; code < 256; code++) {
-        const double away = fixture_gain_value((uint8_t)code) - wanted;
-        const double nearer = fixture_gain_value((uint8_t)nearest) - wanted;
-        if (away * away < nearer * nearer)
-            nearest = code;
-    }
-    return (uint8_t)nearest;
+    return nearest_code(fixture_gain_value, 262144.0 / (sigma * 1.41421356237));
 }
 
 double fixture_motion(const labial_channel_t *channel, const labial_state_t *state, unsigned which, int32_t gain)
@@ -194,7 +177,7 @@ static void build(fixture_model_t *f, unsigned count, unsigned states, unsigned 
         for (unsigned q = 0; q < states; q++)
             means[q] = q < count ? position_of_steps(shape_steps(q, 0, c))
                                  : -4800 + (int)(9600u * (q - count) / (states > count + 1 ? states - count - 1 : 1));
-        sort(means, states);
+        qsort(means, states, sizeof *means, in_order);
         for (unsigned q = 0; q < states; q++) {
             labial_emission_t *emission = &f->emissions[c][q];
             labial_state_t *state = &f->states[c][q];
@@ -298,7 +281,7 @@ void fixture_plain(fixture_model_t *fixture)
 
 void fixture_rich(fixture_model_t *fixture)
 {
-    make_speech(fixture, FIXTURE_SPEECH_STATES);
+    fixture_plain(fixture);
     enrich(fixture);
 }
 
@@ -381,8 +364,7 @@ void fixture_all(fixture_model_t *plain, fixture_model_t *rich, fixture_model_t 
 
 void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, uint32_t seed)
 {
-    fixture_random_t random;
-    random.state = fixture_seed(seed) * 2654435761u + (uint32_t)kind + 1u;
+    fixture_random_t random = { fixture_seed(seed) * 2654435761u + (uint32_t)kind + 1u };
     for (size_t i = 0; i < count; i++) {
         fixture_phoneme_t *p = &out[i];
         p->model = 0;
@@ -416,14 +398,11 @@ void fixture_stream(fixture_phoneme_t *out, size_t count, fixture_kind_t kind, u
             p->ms = fixture_below(&random, 401);
             break;
         case FIXTURE_MILLI:
-            p->ms = 1;
-            break;
         case FIXTURE_ZERO:
-            p->ms = 0;
+            p->ms = kind == FIXTURE_MILLI;
             break;
         case FIXTURE_HOUR:
-            if (i == 0)
-                p->ms = LABIAL_DURATION_MAX;
+            p->ms = i == 0 ? LABIAL_DURATION_MAX : p->ms;
             break;
         case FIXTURE_KINDS:
             break;
@@ -473,15 +452,17 @@ double fixture_output(const labial_rig_output_t *output, const int16_t faps[LABI
     return value;
 }
 
-/* ---- Input that ends exactly where its heap block does ---- */
+void *fixture_room(size_t count, size_t size)
+{
+    void *room = calloc(count ? count : 1u, size ? size : 1u);
+    if (!room)
+        abort();
+    return room;
+}
 
 void *fixture_copy(const void *bytes, size_t size)
 {
-    void *copy = malloc(size ? size : 1u);
-    if (!copy)
-        abort();
-    memcpy(copy, bytes, size);
-    return copy;
+    return memcpy(fixture_room(size, 1), bytes, size);
 }
 
 int fixture_find(const labial_names_t *names, const char *name, size_t length)

@@ -167,7 +167,8 @@ double fixture_output(const labial_rig_output_t *output, const int16_t faps[LABI
 
 /* ---- Input that ends exactly where its heap block does, so that a sanitizer sees every byte read beyond it ---- */
 
-/* A copy of `bytes`, to be freed. */
+/* Room for `count` zeroed elements of `size` bytes, or a copy of `bytes`, to be freed; neither fails. */
+void *fixture_room(size_t count, size_t size);
 void *fixture_copy(const void *bytes, size_t size);
 
 /* labial_find() of a copy of the name. */

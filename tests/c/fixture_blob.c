@@ -42,13 +42,11 @@ static void pad(writer_t *w)
 
 static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned states, unsigned transitions)
 {
-    put(w, (uint16_t)channel->centre, 2);
-    put(w, channel->shape_scale, 2);
-    put(w, channel->slope_scale, 2);
-    put(w, channel->kernel_scale, 2);
-    put(w, channel->pair_scale, 2);
-    put(w, channel->motion_scale[0], 2);
-    put(w, channel->motion_scale[1], 2);
+    const uint16_t head[] = { (uint16_t)channel->centre, channel->shape_scale, channel->slope_scale,
+                              channel->kernel_scale,     channel->pair_scale,  channel->motion_scale[0],
+                              channel->motion_scale[1] };
+    for (unsigned i = 0; i < sizeof head / sizeof *head; i++)
+        put(w, head[i], 2);
     put(w, channel->contact_weight, 1);
     put(w, 0, 1);
     for (unsigned q = 0; q < states; q++) {
@@ -77,26 +75,17 @@ static void put_channel(writer_t *w, const labial_channel_t *channel, unsigned s
 size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
 {
     const size_t n = model->component_count, channels = model->channel_count;
-    writer_t w;
-    w.out = out;
-    w.size = 0;
-    w.room = room;
+    writer_t w = { out, 0, room };
     put_bytes(&w, "LBM1", 4);
     put(&w, 0, 4);
     put(&w, 0, 4);
     put(&w, model->format, 2);
     put(&w, model->frames_per_second, 2);
     put(&w, model->component_count, 2);
-    put(&w, model->phoneme_count, 1);
-    put(&w, model->class_count, 1);
-    put(&w, model->state_count, 1);
-    put(&w, model->predecessor_fours, 1);
-    put(&w, model->search_stride, 1);
-    put(&w, model->silence, 1);
-    put(&w, model->mixture_mean, 1);
-    put(&w, model->kernel_taps, 1);
-    put(&w, model->kernel_stride, 1);
-    put(&w, model->kernel_behind, 1);
+    const uint8_t counts[] = { model->phoneme_count, model->class_count,  model->state_count,  model->predecessor_fours,
+                               model->search_stride, model->silence,      model->mixture_mean, model->kernel_taps,
+                               model->kernel_stride, model->kernel_behind };
+    put_bytes(&w, counts, sizeof counts);
     put(&w,
         (model->contexts ? 1u : 0u) | (model->slopes ? 2u : 0u) | (model->pair_knots == 2 ? 4u : 0u) |
             (model->protrusion ? 8u : 0u),
@@ -155,10 +144,7 @@ size_t fixture_serialise(const labial_model_t *model, uint8_t *out, size_t room)
 
 void fixture_seal(uint8_t *blob, size_t size)
 {
-    writer_t w;
-    w.out = blob;
-    w.size = 4;
-    w.room = 12;
+    writer_t w = { blob, 4, 12 };
     put(&w, (uint32_t)size, 4);
     put(&w, fixture_crc32(blob + 12, size - 12), 4);
 }

@@ -63,10 +63,8 @@ int fixture_open(fixture_host_t *host, const labial_model_t *const *models, unsi
     for (unsigned i = 0; i < model_count; i++)
         host->models[i] = models[i];
     const uint32_t size = size_of_workspace(host);
-    host->stream = (labial_t *)malloc(sizeof *host->stream);
-    host->workspace = (uint32_t *)malloc(size ? size : 4u);
-    if (!host->stream || !host->workspace)
-        abort();
+    host->stream = (labial_t *)fixture_room(1, sizeof *host->stream);
+    host->workspace = (uint32_t *)fixture_room(size, 1);
     memset(host->stream, 0xa5, sizeof *host->stream);
     memset(host->workspace, 0x5a, size);
     return fixture_open_again(host);
@@ -82,10 +80,7 @@ void fixture_close(fixture_host_t *host)
 
 static void move(fixture_host_t *host)
 {
-    labial_t *place = (labial_t *)malloc(sizeof *place);
-    if (!place)
-        abort();
-    memcpy(place, host->stream, sizeof *place);
+    labial_t *place = (labial_t *)fixture_copy(host->stream, sizeof *place);
     memset(host->stream, 0xdd, sizeof *host->stream);
     free(host->stream);
     host->stream = place;

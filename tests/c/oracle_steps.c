@@ -56,10 +56,8 @@ static size_t needs(const span_t *spans, size_t n, size_t s, uint64_t last)
 size_t oracle_units(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
                     oracle_frame_t *frames, size_t room)
 {
-    span_t *spans = (span_t *)malloc((count + 1) * sizeof *spans);
+    span_t *spans = (span_t *)fixture_room(count, sizeof *spans);
     size_t total = 0;
-    if (!spans)
-        abort();
     const size_t n = lay(models, input, count, spans);
     for (size_t s = 0; s < n; s++) {
         const fixture_phoneme_t *own = &input[spans[s].input];
@@ -367,11 +365,9 @@ void oracle_search(const labial_model_t *model, unsigned channel, const oracle_f
                    const int16_t (*targets)[LABIAL_CHANNELS], size_t first, size_t count, uint8_t *path)
 {
     const size_t stride = model->search_stride;
-    oracle_step_t *steps = (oracle_step_t *)malloc(count * sizeof *steps);
-    size_t *block = (size_t *)malloc(count * sizeof *block); /* of each frame */
+    oracle_step_t *steps = (oracle_step_t *)fixture_room(count, sizeof *steps);
+    size_t *block = (size_t *)fixture_room(count, sizeof *block); /* of each frame */
     size_t begin = 0, blocks = 0;
-    if (!steps || !block)
-        abort();
     for (size_t t = 0; t < count; t++) {
         block[t] = blocks;
         if (is_turn(model, channel, first + t) || t + 1 == count) {

@@ -18,10 +18,7 @@ typedef struct {
 static void add_row(equation_t *equations, size_t t, double before, double own, double behind, double precision,
                     double mean)
 {
-    double w[3];
-    w[0] = before;
-    w[1] = own;
-    w[2] = behind;
+    const double w[3] = { before, own, behind };
     for (int i = -1; i <= 1; i++) {
         if (w[i + 1] == 0.0)
             continue;
@@ -68,9 +65,7 @@ void oracle_trajectory(const labial_channel_t *channel, const uint8_t *path, con
                        const uint16_t *contacts, unsigned bit, const int32_t *gain, size_t count, const size_t *start,
                        double *motion)
 {
-    equation_t *e = (equation_t *)calloc(count + 2, sizeof *e);
-    if (!e)
-        abort();
+    equation_t *e = (equation_t *)fixture_room(count + 2, sizeof *e);
     fill(e, channel, path, targets, contacts, bit, gain, count);
     for (size_t t = 0; t < count; t++) /* Gauss: frame t leaves the two equations behind its own */
         for (size_t i = 1; i <= 2 && t + i < count; i++) {
@@ -128,6 +123,7 @@ static void complete(const labial_model_t *model, double motion[LABIAL_CHANNELS]
 /* ---- A whole stream ---- */
 
 #define FADE 8
+#define MOST 6000 /* frames of a solution */
 
 typedef struct {
     const labial_model_t *const *models;
@@ -169,32 +165,31 @@ static double limited(double value)
 static void solve(const stream_t *stream, size_t first, size_t count, double (*motion)[LABIAL_CHANNELS])
 {
     const labial_model_t *model = stream->models[stream->frames[first].model];
-    uint8_t *path = (uint8_t *)malloc(count);
-    int16_t *targets = (int16_t *)malloc(count * sizeof *targets);
-    size_t *start = (size_t *)malloc(count * sizeof *start);
-    double *m = (double *)malloc(count * sizeof *m);
-    int32_t *gain = (int32_t *)malloc(count * sizeof *gain);
-    if (!path || !targets || !start || !m || !gain)
+    const int16_t(*all)[LABIAL_CHANNELS] = (const int16_t(*)[LABIAL_CHANNELS])(stream->targets + first);
+    struct {
+        uint8_t path[MOST];
+        int16_t targets[MOST];
+        size_t start[MOST];
+        double motion[MOST];
+        int32_t gain[MOST];
+    } *own = fixture_room(1, sizeof *own);
+    if (count > MOST)
         abort();
     for (unsigned c = 0; c < model->channel_count; c++) {
-        oracle_search(model, c, stream->frames + first, (const int16_t(*)[LABIAL_CHANNELS])(stream->targets + first),
-                      first, count, path);
+        oracle_search(model, c, stream->frames + first, all, first, count, own->path);
         for (size_t t = 0; t < count; t++) {
-            targets[t] = stream->targets[first + t][c];
-            gain[t] = gain_at(stream, c, first + t);
+            own->targets[t] = all[t][c];
+            own->gain[t] = gain_at(stream, c, first + t);
         }
-        starts(model, c, first, count, start);
-        oracle_trajectory(&model->channels[c], path, targets, stream->contacts + first, c, gain, count, start, m);
+        starts(model, c, first, count, own->start);
+        oracle_trajectory(&model->channels[c], own->path, own->targets, stream->contacts + first, c, own->gain, count,
+                          own->start, own->motion);
         for (size_t t = 0; t < count; t++)
-            motion[first + t][c] = limited(m[t]);
+            motion[first + t][c] = limited(own->motion[t]);
     }
     for (size_t t = 0; t < count; t++)
         complete(model, motion[first + t]);
-    free(path);
-    free(targets);
-    free(start);
-    free(m);
-    free(gain);
+    free(own);
 }
 
 /* Step j of a fade of `length`, from `held`, which moves on by `pace` / 2, / 4, ... */
@@ -246,19 +241,16 @@ static void fade(const stream_t *stream, const double *pose, double (*motion)[LA
 size_t oracle_stream(const labial_model_t *const *models, const fixture_phoneme_t *input, size_t count,
                      const double *held, const uint8_t *told, double (*motion)[LABIAL_CHANNELS], size_t room)
 {
-    stream_t stream;
-    size_t t;
-    stream.models = models;
-    stream.frames = (oracle_frame_t *)malloc(room * sizeof *stream.frames);
-    stream.targets = (int16_t(*)[LABIAL_CHANNELS])malloc(room * sizeof *stream.targets);
-    stream.contacts = (uint16_t *)malloc(room * sizeof *stream.contacts);
-    stream.reached = (int32_t *)malloc(room * sizeof *stream.reached);
-    if (!stream.frames || !stream.targets || !stream.contacts || !stream.reached)
-        abort();
+    stream_t stream = { models,
+                        (oracle_frame_t *)fixture_room(room, sizeof *stream.frames),
+                        (int16_t(*)[LABIAL_CHANNELS])fixture_room(room, sizeof *stream.targets),
+                        (uint16_t *)fixture_room(room, sizeof *stream.contacts),
+                        (int32_t *)fixture_room(room, sizeof *stream.reached),
+                        0 };
     stream.count = oracle_units(models, input, count, stream.frames, room);
     oracle_targets(models, stream.frames, stream.count, stream.targets, stream.contacts);
     reach(&stream, told);
-    for (size_t first = t = 0; t < stream.count; t++)
+    for (size_t first = 0, t = 0; t < stream.count; t++)
         if (stream.frames[t].ends) {
             solve(&stream, first, t + 1 - first, motion);
             first = t + 1;

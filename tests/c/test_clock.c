@@ -87,6 +87,14 @@ TEST(a_day_of_blocks_is_a_day)
     assert_in_range(blocks * 1024 - sample, 440, 442); /* 10 ms before the end, which the first write moved by 50 ms */
 }
 
+/* The sample that is heard, from a clock that runs. */
+static int64_t heard_at(int64_t now)
+{
+    int64_t sample;
+    assert_int_equal(labial_clock_at(&clock, now, &sample), 0);
+    return sample;
+}
+
 /* Catches numbers of dropped sound that are heard, ones of a sound that has none, and a sound that goes on after it was
  * silenced. */
 TEST(other_numbers)
@@ -94,30 +102,22 @@ TEST(other_numbers)
     int64_t sample;
     assert_int_equal(labial_clock_init(&clock, 1000), 0);
     labial_clock_play(&clock, LABIAL_CLOCK_NONE, 100, 0);
-    assert_int_equal(labial_clock_at(&clock, 50000, &sample), 0);
-    assert_int_equal(sample, 0);
+    assert_int_equal(heard_at(50000), 0);
     labial_clock_play(&clock, 40, 100, 50000); /* heard from 100 ms on */
-    assert_int_equal(labial_clock_at(&clock, 99000, &sample), 0);
-    assert_int_equal(sample, 40);
-    assert_int_equal(labial_clock_at(&clock, 150000, &sample), 0);
-    assert_int_equal(sample, 90);
+    assert_int_equal(heard_at(99000), 40);
+    assert_int_equal(heard_at(150000), 90);
     labial_clock_play(&clock, 1000, 100, 150000); /* the numbers between were dropped; heard from 200 ms on */
-    assert_int_equal(labial_clock_at(&clock, 199000, &sample), 0);
-    assert_int_equal(sample, 1000);
-    assert_int_equal(labial_clock_at(&clock, 250000, &sample), 0);
-    assert_int_equal(sample, 1050);
+    assert_int_equal(heard_at(199000), 1000);
+    assert_int_equal(heard_at(250000), 1050);
     labial_clock_play(&clock, LABIAL_CLOCK_NONE, 500, 250000);
-    assert_int_equal(labial_clock_at(&clock, 700000, &sample), 0);
-    assert_int_equal(sample, 1099);
+    assert_int_equal(heard_at(700000), 1099);
     labial_clock_play(&clock, 1100, 100, 700000); /* heard from 800 ms on */
-    assert_int_equal(labial_clock_at(&clock, 850000, &sample), 0);
-    assert_int_equal(sample, 1150);
+    assert_int_equal(heard_at(850000), 1150);
     labial_clock_stop(&clock);
     assert_int_equal(labial_clock_at(&clock, 860000, &sample), -1);
     assert_int_equal(sample, 1199); /* the last one that was given, not 1160, the last one that was heard */
     labial_clock_play(&clock, 1200, 100, 860000); /* at once */
-    assert_int_equal(labial_clock_at(&clock, 870000, &sample), 0);
-    assert_int_equal(sample, 1210);
+    assert_int_equal(heard_at(870000), 1210);
     assert_int_equal(labial_clock_at(&clock, 970000, &sample), 10000);
     assert_int_equal(sample, 1299);
     labial_clock_play(&clock, 1300, 0, 970000); /* nothing */

@@ -45,39 +45,6 @@ static void push(unsigned phoneme, unsigned slot, uint32_t frames)
     assert_int_equal(labial_units_push(&units, phoneme, slot, frames * 1000 / FIXTURE_RATE, FIXTURE_RATE), frames);
 }
 
-/* Takes `count` frames and wants their shares of 4096, and whether they are open, as text. */
-static void expect_places(const unsigned *shares, const char *wanted_open, size_t count)
-{
-    labial_taken_t taken;
-    for (size_t i = 0; i < count; i++) {
-        assert_ok(labial_units_take(&units, models, 1, &taken));
-        if (shares)
-            assert_int_equal(taken.share, shares[i] * 4);
-        assert_int_equal(taken.is_open, wanted_open[i] == 'o');
-        assert_int_equal(taken.rest, 0);
-    }
-}
-
-/* By hand: the middles of frames; a closure is open in seven frames at most. */
-TEST(frames_know_their_place_in_the_phoneme)
-{
-    static const unsigned halves[] = { 2048 }, quarters[] = { 1024, 3072 }, eighths[] = { 512, 1536, 2560, 3584 };
-    begin(&plain.model);
-    push(FIXTURE_A, 0, 1);
-    expect_places(halves, "-", 1);
-    begin(&plain.model);
-    push(FIXTURE_P, 0, 2), push(FIXTURE_A, 0, 4);
-    expect_places(quarters, "--", 2);
-    expect_places(eighths, "---o", 4);
-    begin(&plain.model);
-    push(FIXTURE_P, 0, 14);
-    expect_places(NULL, "ooo-------oooo", 14);
-    begin(&plain.model);
-    push(FIXTURE_P, 0, 15), push(FIXTURE_P, 0, 40); /* each for itself */
-    expect_places(NULL, "ooo--------oooo", 15);
-    expect_places(NULL, "ooo---------------------------------oooo", 40);
-}
-
 /* Random phonemes of one or two models. */
 static void compose(int kind, uint32_t seed)
 {

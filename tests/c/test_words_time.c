@@ -15,15 +15,17 @@ typedef struct {
 } spoken_t;
 
 static labial_words_t stream;
+static spoken_t spoken;
 
 static void begin(int32_t offset)
 {
     memset(&stream, 0xa5, sizeof stream);
+    memset(&spoken, 0, sizeof spoken);
     assert_ok(labial_words_init(&stream, &words_en, NULL, offset));
 }
 
 /* Takes all phonemes that there are; returns what the last call did. */
-static int take_all(spoken_t *spoken)
+static int take_all(void)
 {
     for (;;) {
         unsigned phoneme = 77;
@@ -32,33 +34,70 @@ static int take_all(spoken_t *spoken)
         if (result != LABIAL_OK)
             return result;
         assert_in_range(milliseconds, 1, LABIAL_DURATION_MAX);
-        assert_true(spoken->count < 1300);
-        spoken->phonemes[spoken->count] = phoneme;
-        spoken->lasts[spoken->count++] = milliseconds;
+        assert_true(spoken.count < 1300);
+        spoken.phonemes[spoken.count] = phoneme;
+        spoken.lasts[spoken.count++] = milliseconds;
     }
 }
 
 /* Says a word and takes what comes of it. */
-static void say(spoken_t *spoken, const char *text, uint32_t start, uint32_t end)
+static void say(const char *text, uint32_t start, uint32_t end)
 {
     assert_ok(labial_words_push(&stream, text, strlen(text), start, end));
-    assert_true(take_all(spoken) >= LABIAL_WAITING);
+    assert_true(take_all() >= LABIAL_WAITING);
 }
 
-static void flush(spoken_t *spoken)
+static void flush(void)
 {
     assert_ok(labial_words_end(&stream));
-    assert_int_equal(take_all(spoken), LABIAL_DONE);
+    assert_int_equal(take_all(), LABIAL_DONE);
     assert_ok(labial_words_restart(&stream));
 }
 
-/* The end of what was spoken, and of its first `count` phonemes. */
-static uint32_t until(const spoken_t *spoken, unsigned count)
+/* A word with the ends of its characters, alone. */
+static void say_characters(const char *text, uint32_t start, const uint32_t *ends)
+{
+    assert_ok(labial_words_push_characters(&stream, text, strlen(text), start, ends, (unsigned)strlen(text)));
+    flush();
+}
+
+/* The end of the first `count` phonemes that were spoken, and of all. */
+static uint32_t until(unsigned count)
 {
     uint32_t sum = 0;
     for (unsigned i = 0; i < count; i++)
-        sum += spoken->lasts[i];
+        sum += spoken.lasts[i];
     return sum;
+}
+
+static uint32_t until_now(void)
+{
+    return until(spoken.count);
+}
+
+/* What was spoken must be these phonemes. */
+static void expect_phonemes(const uint8_t *expected, size_t count)
+{
+    assert_int_equal(spoken.count, count);
+    for (unsigned i = 0; i < spoken.count; i++)
+        assert_int_equal(spoken.phonemes[i], expected[i]);
+}
+
+/* Steps with "; " between them: a word with its times, "hello 100-400", "end" with all that is left, or "= 400", where what
+ * was spoken must end. */
+static void follow(const char *steps)
+{
+    for (; *steps; steps += strcspn(steps, ";"), steps += *steps ? 2 : 0) {
+        char word[16];
+        unsigned long start = 0, end = 0;
+        const int found = sscanf(steps, "%15[^ ;] %lu-%lu", word, &start, &end);
+        if (found == 3)
+            say(word, (uint32_t)start, (uint32_t)end);
+        else if (found == 2)
+            assert_int_equal(until_now(), start);
+        else
+            flush();
+    }
 }
 
 /* Would catch a wrong duration, a factor that is left out or holds elsewhere, and rounding that moves a word's end. */
@@ -66,14 +105,13 @@ TEST(words_share_their_time_as_by_the_reference)
 {
     unsigned k, next;
     for (unsigned i = 0; i < COUNT_OF(timed); i++) {
-        spoken_t spoken = { 0 };
         labial_word_t word;
         begin(0);
-        say(&spoken, timed[i].text, 0, timed[i].length);
+        say(timed[i].text, 0, timed[i].length);
         if (!timed[i].pause)
-            say(&spoken, "a", timed[i].length, timed[i].length);
+            say("a", timed[i].length, timed[i].length);
         else
-            flush(&spoken);
+            flush();
         assert_ok(labial_words_read(&words_en, NULL, timed[i].text, strlen(timed[i].text), &word));
         for (next = k = 0; k < word.count; k++) {
             if (timed[i].lasts[k] == 0)
@@ -95,69 +133,48 @@ TEST(gaps_behind_punctuation_are_pauses_sooner)
                                          "hello\xc3\xa9", "hello,\xcc\x81", "hello”",   "hel।lo" };
     for (unsigned i = 0; i < COUNT_OF(texts); i++) {
         for (uint32_t gap = 79; gap <= 80; gap++) {
-            spoken_t spoken = { 0 };
             begin(0);
-            say(&spoken, texts[i], 100, 400);
-            say(&spoken, "world", 400 + gap, 800);
-            assert_int_equal(until(&spoken, spoken.count), i < 12 && gap == 80 ? 400 : 400 + gap);
+            say(texts[i], 100, 400);
+            say("world", 400 + gap, 800);
+            assert_int_equal(until_now(), i < 12 && gap == 80 ? 400 : 400 + gap);
         }
     }
-    spoken_t spoken = { 0 };
     begin(0);
-    say(&spoken, "hello", 100, 400);
-    say(&spoken, ",", 410, 410); /* told by itself */
-    say(&spoken, "'\"", 410, 410);
-    say(&spoken, "\x80\x80", 410, 410); /* no UTF-8 */
-    say(&spoken, "world", 500, 800);
-    assert_int_equal(until(&spoken, spoken.count), 400);
+    say("hello", 100, 400);
+    say(",", 410, 410); /* told by itself */
+    say("'\"", 410, 410);
+    say("\x80\x80", 410, 410); /* no UTF-8 */
+    say("world", 500, 800);
+    assert_int_equal(until_now(), 400);
 }
 
 /* Would catch time that is lost or invented: whatever the words, the phonemes lie between their times. */
 TEST(phonemes_keep_the_words_times)
 {
-    spoken_t spoken = { 0 };
-    unsigned first, second;
     begin(0);
-    say(&spoken, "hello", 100, 400);
+    say("hello", 100, 400);
     assert_int_equal(spoken.count, 0);
-    say(&spoken, "world", 549, 800); /* a gap of 149 ms belongs to the word before it */
+    follow("world 549-800; = 549"); /* a gap of 149 ms belongs to the word before it */
     assert_int_equal(spoken.phonemes[0], 0);
     assert_int_equal(spoken.lasts[0], 100);
-    first = spoken.count;
-    assert_int_equal(until(&spoken, first), 549);
-    say(&spoken, "now", 950, 1200); /* one of 150 ms is silence */
-    second = spoken.count;
-    assert_int_equal(until(&spoken, second), 800);
-    flush(&spoken);
+    follow("now 950-1200; = 800"); /* one of 150 ms is silence */
+    const unsigned second = spoken.count;
+    follow("end; = 1200");
     assert_int_equal(spoken.phonemes[second], 0);
     assert_int_equal(spoken.lasts[second], 150);
-    assert_int_equal(until(&spoken, spoken.count), 1200);
-    say(&spoken, "again", 1300, 1600); /* a flush is not the end */
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 1600);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 1600);
+    follow("again 1300-1600; end; = 1600; end; = 1600"); /* a flush is not the end */
 }
 
 /* Would catch phonemes that are said twice where the next word takes them, and a context that survives an end. */
 TEST(a_word_takes_phonemes_from_the_one_before)
 {
     static const uint8_t expected[] = { 14, 6, 35, 22, 17, 21, 37, 3, 23, 9, 1, 21, 12, 38 }; /* five million dollars */
-    spoken_t spoken = { 0 };
     begin(0);
-    say(&spoken, "$5", 0, 300);
-    say(&spoken, "million", 300, 900);
-    flush(&spoken);
-    assert_int_equal(spoken.count, sizeof expected);
-    for (unsigned i = 0; i < spoken.count; i++)
-        assert_int_equal(spoken.phonemes[i], expected[i]);
-    assert_int_equal(until(&spoken, 3), 300);
-    assert_int_equal(until(&spoken, spoken.count), 900);
+    follow("$5 0-300; million 300-900; end; = 900");
+    expect_phonemes(expected, sizeof expected);
+    assert_int_equal(until(3), 300);
     spoken.count = 0;
-    say(&spoken, "$5", 900, 1200);
-    flush(&spoken);
-    say(&spoken, "million", 1200, 1500);
-    flush(&spoken);
+    follow("$5 900-1200; end; million 1200-1500; end");
     assert_int_equal(spoken.count, 8 + 6);
 }
 
@@ -166,53 +183,29 @@ TEST(a_word_takes_all_phonemes_of_the_one_before)
 {
     static const uint8_t expected[] = { 0, 14, 17, 14, 32, 22, 1, 28, 8 }; /* fifth march */
     static const uint32_t ends[] = { 500, 550, 600, 700, 800 };
-    spoken_t spoken = { 0 };
     for (unsigned round = 0; round < 2u; round++) {
         begin(0);
-        spoken.count = 0;
-        say(&spoken, "5", 100, 400);
+        say("5", 100, 400);
         if (round == 0u)
-            say(&spoken, "March", 400, 800);
+            say("March", 400, 800);
         else
             assert_ok(labial_words_push_characters(&stream, "March", 5, 400, ends, 5));
-        flush(&spoken);
-        assert_int_equal(spoken.count, sizeof expected);
-        for (unsigned i = 0; i < spoken.count; i++) {
-            assert_int_equal(spoken.phonemes[i], expected[i]);
-            assert_true(i == 0u || spoken.lasts[i] >= 40u);
-        }
-        assert_int_equal(until(&spoken, 1), 100);
-        assert_int_equal(until(&spoken, spoken.count), 800);
+        flush();
+        expect_phonemes(expected, sizeof expected);
+        for (unsigned i = 1; i < spoken.count; i++)
+            assert_true(spoken.lasts[i] >= 40u);
+        assert_int_equal(until(1), 100);
+        assert_int_equal(until_now(), 800);
     }
 }
 
-/* Would catch a word that runs into the next one, and one without time that is spoken nevertheless. */
+/* Would catch a word that runs into the next one, one without time that is spoken nevertheless, and one that goes back in
+ * time behind a flush. */
 TEST(a_word_ends_where_the_next_begins)
 {
-    spoken_t spoken = { 0 };
     begin(0);
-    say(&spoken, "hello", 0, 900);
-    say(&spoken, "my", 500, 700);
-    assert_int_equal(until(&spoken, spoken.count), 500);
-    say(&spoken, "own", 500, 600);
-    assert_int_equal(until(&spoken, spoken.count), 500);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 600);
-}
-
-/* Would catch a word that goes back in time behind a flush. */
-TEST(what_is_spoken_is_over)
-{
-    spoken_t spoken = { 0 };
-    begin(0);
-    say(&spoken, "hello", 100, 600);
-    flush(&spoken);
-    say(&spoken, "my", 500, 550);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 600);
-    say(&spoken, "own", 500, 700);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 700);
+    follow("hello 0-900; my 500-700; = 500; own 500-600; = 500; end; = 600");
+    follow("my 500-550; end; = 600; own 500-700; end; = 700");
 }
 
 /* Would catch a word of unknown end that lasts through a pause, or that is cut short. */
@@ -220,101 +213,83 @@ TEST(ends_that_are_not_known_are_guessed)
 {
     labial_word_t word;
     uint32_t length, slow;
-    spoken_t spoken = { 0 };
     unsigned count;
     assert_ok(labial_words_read(&words_en, NULL, "banana", 6, &word));
     length = labial_words_length(&words_en, &word);
     assert_in_range(length, 300, 700);
     begin(0);
-    say(&spoken, "banana", 0, LABIAL_WORDS_NO_END);
-    say(&spoken, "banana", length / 2, LABIAL_WORDS_NO_END); /* spoken fast */
-    assert_int_equal(until(&spoken, spoken.count), length / 2);
+    say("banana", 0, LABIAL_WORDS_NO_END);
+    say("banana", length / 2, LABIAL_WORDS_NO_END); /* spoken fast */
+    assert_int_equal(until_now(), length / 2);
     slow = length / 2 + length / 4 * 6;
-    say(&spoken, "banana", slow, LABIAL_WORDS_NO_END); /* slowly: one and a half times */
-    assert_int_equal(until(&spoken, spoken.count), slow);
-    say(&spoken, "banana", 10 * length, LABIAL_WORDS_NO_END); /* and before a pause */
-    assert_int_equal(until(&spoken, spoken.count), slow + length);
+    say("banana", slow, LABIAL_WORDS_NO_END); /* slowly: one and a half times */
+    assert_int_equal(until_now(), slow);
+    say("banana", 10 * length, LABIAL_WORDS_NO_END); /* and before a pause */
+    assert_int_equal(until_now(), slow + length);
     count = spoken.count;
-    say(&spoken, ".", 10 * length + 222, LABIAL_WORDS_NO_END); /* punctuation tells where it ends */
-    flush(&spoken);
+    say(".", 10 * length + 222, LABIAL_WORDS_NO_END); /* punctuation tells where it ends */
+    flush();
     assert_int_equal(spoken.phonemes[count], 0);
-    assert_int_equal(until(&spoken, spoken.count), 10 * length + 222);
-    say(&spoken, "banana", 20 * length, LABIAL_WORDS_NO_END);
-    say(&spoken, ".", 20 * length, LABIAL_WORDS_NO_END); /* but not with the word */
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 21 * length);
+    assert_int_equal(until_now(), 10 * length + 222);
+    say("banana", 20 * length, LABIAL_WORDS_NO_END);
+    say(".", 20 * length, LABIAL_WORDS_NO_END); /* but not with the word */
+    flush();
+    assert_int_equal(until_now(), 21 * length);
     for (unsigned longer = 0; longer < 2; longer++) { /* one and a half times is the most */
         begin(0);
         memset(&spoken, 0, sizeof spoken);
-        say(&spoken, "banana", 0, LABIAL_WORDS_NO_END);
-        say(&spoken, "banana", length / 4 * 6 + longer, LABIAL_WORDS_NO_END);
-        assert_int_equal(until(&spoken, spoken.count), longer ? length : length / 4 * 6);
+        say("banana", 0, LABIAL_WORDS_NO_END);
+        say("banana", length / 4 * 6 + longer, LABIAL_WORDS_NO_END);
+        assert_int_equal(until_now(), longer ? length : length / 4 * 6);
     }
-    say(&spoken, "banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 0xffffffffu);
+    say("banana", 0xfffffff0u, LABIAL_WORDS_NO_END); /* hours of silence, in parts */
+    flush();
+    assert_int_equal(until_now(), 0xffffffffu);
 }
 
 /* Would catch words that vanish since their service tells no more than where they begin. */
 TEST(words_of_no_length_have_no_known_end)
 {
     static const uint32_t ends[5] = { 500, 500, 500, 500, 500 };
-    spoken_t open = { 0 }, none = { 0 };
+    static spoken_t open;
     begin(0);
-    say(&open, "hello", 500, LABIAL_WORDS_NO_END);
-    say(&open, "shake", 700, LABIAL_WORDS_NO_END);
-    flush(&open);
+    say("hello", 500, LABIAL_WORDS_NO_END);
+    say("shake", 700, LABIAL_WORDS_NO_END);
+    flush();
+    open = spoken;
     begin(0);
-    say(&none, "hello", 500, 500);
-    say(&none, "shake", 700, 700);
-    flush(&none);
-    assert_memory_equal(&none, &open, sizeof none);
-    assert_in_range(until(&none, none.count), 900, 1300);
-    memset(&open, 0, sizeof open);
-    memset(&none, 0, sizeof none);
+    follow("hello 500-500; shake 700-700; end");
+    assert_memory_equal(&spoken, &open, sizeof open);
+    assert_in_range(until_now(), 900, 1300);
     begin(0);
-    say(&open, "shake", 500, LABIAL_WORDS_NO_END);
-    flush(&open);
+    say("shake", 500, LABIAL_WORDS_NO_END);
+    flush();
+    open = spoken;
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "shake", 5, 500, ends, 5));
-    flush(&none);
-    assert_memory_equal(&none, &open, sizeof none);
+    say_characters("shake", 500, ends);
+    assert_memory_equal(&spoken, &open, sizeof open);
 }
 
 /* Would catch silent texts that cut or lengthen words whose ends are known. */
 TEST(silent_texts_leave_their_time)
 {
-    spoken_t spoken = { 0 };
     begin(0);
-    say(&spoken, "[sighs]", 0, 300);
-    assert_int_equal(take_all(&spoken), LABIAL_WAITING);
-    say(&spoken, "no", 400, 600);
-    say(&spoken, "!", 500, 650);
-    flush(&spoken);
+    follow("[sighs] 0-300; no 400-600; ! 500-650; end; = 600");
     assert_int_equal(spoken.lasts[0], 400);
-    assert_int_equal(until(&spoken, spoken.count), 600);
 }
 
 /* Would catch an unknown word that closes the lips, or lasts otherwise than it is told. */
 TEST(unknown_words_move_the_lips)
 {
-    static const char foreign[] = "\xd0\xbf\xd1\x80";
-    spoken_t spoken = { 0 };
     begin(0);
-    say(&spoken, foreign, 0, 700);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 700);
+    follow("\xd0\xbf\xd1\x80 0-700; end; = 700");
     assert_int_equal(spoken.count, 4);
     for (unsigned i = 0; i < spoken.count; i++) {
         assert_string_equal(labial_words_label(&words_en, spoken.phonemes[i]), i % 2 ? "L" : "AH");
         assert_in_range(spoken.lasts[i], 100, 225);
     }
-    say(&spoken, foreign, 800, LABIAL_WORDS_NO_END);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 1100);
-    say(&spoken, foreign, 1100, 1110);
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 1110);
+    say("\xd0\xbf\xd1\x80", 800, LABIAL_WORDS_NO_END);
+    follow("end; = 1100; \xd0\xbf\xd1\x80 1100-1110; end; = 1110");
 }
 
 /* Would catch an offset that is added twice or to one end alone, and times that wrap below zero or beyond the last. */
@@ -329,29 +304,25 @@ TEST(offsets_move_all_words)
         { INT32_MIN, 100, 300, 0, 0 }, { INT32_MAX, 0xf0000000u, 0xf0000010u, 0xffffffffu, 0xffffffffu },
     };
     for (unsigned i = 0; i < COUNT_OF(cases); i++) {
-        spoken_t spoken = { 0 };
         unsigned silent = 0;
         begin(cases[i].offset);
-        say(&spoken, "hello", cases[i].start, cases[i].end);
-        flush(&spoken);
+        say("hello", cases[i].start, cases[i].end);
+        flush();
         while (silent < spoken.count && spoken.phonemes[silent] == 0)
             silent++;
-        assert_int_equal(until(&spoken, silent), cases[i].silence);
-        assert_int_equal(until(&spoken, spoken.count), cases[i].last);
+        assert_int_equal(until(silent), cases[i].silence);
+        assert_int_equal(until_now(), cases[i].last);
     }
 }
 
 /* Says "shake" with the ends of its characters, and tells where its phonemes SH, EY and K end. */
 static void shake(const uint32_t ends[5], uint32_t found[3])
 {
-    spoken_t spoken = { 0 };
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "shake", 5, 0, ends, 5));
-    flush(&spoken);
+    say_characters("shake", 0, ends);
     assert_int_equal(spoken.count, 3);
-    found[0] = until(&spoken, 1);
-    found[1] = until(&spoken, 2);
-    found[2] = until(&spoken, 3);
+    for (unsigned i = 0; i < 3; i++)
+        found[i] = until(i + 1);
 }
 
 /* Would catch characters that do not count, count alone, or count where they only share out the word's time. */
@@ -374,19 +345,17 @@ TEST(characters_move_boundaries_half_way)
 TEST(a_characters_phonemes_begin_with_it)
 {
     static const uint32_t box[3] = { 100, 200, 600 };
-    spoken_t slow = { 0 }, plain = { 0 }, spoken = { 0 };
-    uint32_t within;
     begin(0);
-    say(&slow, "box", 0, 600000);
-    say(&slow, "a", 600000, 600000);
-    within = 200u + 400u * (slow.lasts[2] / 100u) / (slow.lasts[2] / 100u + slow.lasts[3] / 100u);
+    say("box", 0, 600000);
+    say("a", 600000, 600000);
+    const uint32_t within = 200u + 400u * (spoken.lasts[2] / 100u) / (spoken.lasts[2] / 100u + spoken.lasts[3] / 100u);
     begin(0);
-    say(&plain, "box", 0, 600);
-    flush(&plain);
+    say("box", 0, 600);
+    flush();
+    const uint32_t wanted = (until(3) + within) / 2u;
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "box", 3, 0, box, 3));
-    flush(&spoken);
-    assert_in_range(until(&spoken, 3), (until(&plain, 3) + within) / 2u - 1u, (until(&plain, 3) + within) / 2u + 1u);
+    say_characters("box", 0, box);
+    assert_in_range(until(3), wanted - 1u, wanted + 1u);
 }
 
 /* Would catch phonemes of one character that do not share its time, silent letters at the beginning that take it, and
@@ -394,29 +363,21 @@ TEST(a_characters_phonemes_begin_with_it)
 TEST(characters_of_several_phonemes_share_their_time)
 {
     static const uint32_t box[3] = { 100, 200, 600 }, knee[4] = { 400, 500, 600, 700 }, slow[2] = { 90000, 100000 };
-    spoken_t spoken = { 0 };
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "box", 3, 0, box, 3));
-    flush(&spoken); /* B AA K S: the x has K and S */
+    say_characters("box", 0, box); /* B AA K S: the x has K and S */
     assert_int_equal(spoken.count, 4);
-    assert_in_range(until(&spoken, 3), 290, 460);
-    assert_int_equal(until(&spoken, 4), 600);
-    spoken.count = 0;
+    assert_in_range(until(3), 290, 460);
+    assert_int_equal(until(4), 600);
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "knee", 4, 0, knee, 4));
-    flush(&spoken);
+    say_characters("knee", 0, knee);
     assert_int_equal(spoken.count, 2);
-    assert_in_range(until(&spoken, 1), 300, 420); /* N has the k's time, too */
-    spoken.count = 0;
+    assert_in_range(until(1), 300, 420); /* N has the k's time, too */
     begin(0);
-    assert_ok(labial_words_push_characters(&stream, "go", 2, 0, slow, 2));
-    flush(&spoken);
-    assert_int_equal(until(&spoken, 2), 100000);
-    spoken.count = 0;
+    say_characters("go", 0, slow);
+    assert_int_equal(until(2), 100000);
     begin(-200); /* the word begins before the sound, and loses a part */
-    assert_ok(labial_words_push_characters(&stream, "box", 3, 0, box, 3));
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 400);
+    say_characters("box", 0, box);
+    assert_int_equal(until_now(), 400);
 }
 
 TEST(characters_must_be_in_order)
@@ -439,12 +400,10 @@ TEST(characters_must_be_in_order)
 /* Would catch a word after the end, phonemes that the end or a cancel leaves behind, and times that begin anew. */
 TEST(words_end_and_go_on)
 {
-    spoken_t spoken = { 0 };
-    labial_latency_t latency;
     begin(0);
     assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* they have not ended */
-    say(&spoken, "me", 100, 300);
-    latency = labial_words_latency(&stream);
+    say("me", 100, 300);
+    labial_latency_t latency = labial_words_latency(&stream);
     assert_true(latency.milliseconds == 300 && latency.phonemes == 2 && latency.frames == 0 && latency.delay == 0);
     assert_ok(labial_words_push(&stream, "box", 3, 300, 700));
     assert_ok(labial_words_end(&stream)); /* before anything was taken */
@@ -453,29 +412,18 @@ TEST(words_end_and_go_on)
     assert_true(latency.milliseconds == 700 && latency.phonemes == 6);
     assert_int_equal(labial_words_push(&stream, "me", 2, 800, 900), LABIAL_ERROR_STATE);
     assert_int_equal(labial_words_restart(&stream), LABIAL_ERROR_STATE); /* there are phonemes to be taken */
-    assert_int_equal(take_all(&spoken), LABIAL_DONE);
-    assert_int_equal(until(&spoken, spoken.count), 700);
-    assert_ok(labial_words_restart(&stream));
-    say(&spoken, "me", 900, 1000);
-    say(&spoken, "box", 1000, 1300);
-    assert_int_equal(until(&spoken, spoken.count), 1000);
+    follow("end; = 700; me 900-1000; box 1000-1300; = 1000");
     assert_ok(labial_words_cancel(&stream));
     latency = labial_words_latency(&stream);
     assert_true(latency.milliseconds == 0 && latency.phonemes == 0);
-    assert_int_equal(take_all(&spoken), LABIAL_DONE);
-    assert_int_equal(until(&spoken, spoken.count), 1000);
     assert_int_equal(labial_words_push(&stream, "me", 2, 1000, 1100), LABIAL_ERROR_STATE);
-    assert_ok(labial_words_restart(&stream));
-    say(&spoken, "me", 950, 1200); /* before the word that was dropped, and in part before what was taken */
-    flush(&spoken);
-    assert_int_equal(until(&spoken, spoken.count), 1200);
+    follow("end; = 1000; me 950-1200; end; = 1200"); /* before what was dropped, and in part before what was taken */
 }
 
 /* Would catch a word that is counted twice or not at all while it is spoken, and a restart in the midst of one. */
 TEST(latency_tells_what_is_inside)
 {
     static const char *const texts[] = { "banana", "\xd0\x9f" }; /* read, and in letters that are not known */
-    spoken_t spoken = { 0 };
     labial_latency_t latency;
     unsigned phoneme;
     uint32_t lasts;
@@ -492,7 +440,7 @@ TEST(latency_tells_what_is_inside)
         latency = labial_words_latency(&stream);
         assert_true(latency.phonemes < before && latency.milliseconds == 900 - lasts);
         assert_ok(labial_words_end(&stream));
-        assert_int_equal(take_all(&spoken), LABIAL_DONE);
+        assert_int_equal(take_all(), LABIAL_DONE);
         assert_int_equal(labial_words_latency(&stream).phonemes, 0);
     }
     begin(0);
@@ -533,7 +481,6 @@ TEST(misuse_is_an_error)
     labial_words_t none;
     unsigned phoneme;
     uint32_t milliseconds;
-    spoken_t spoken = { 0 };
     memset(&none, 0, sizeof none);
     other.format++;
     assert_int_equal(labial_words_init(NULL, &words_en, NULL, 0), LABIAL_ERROR_NULL);
@@ -566,8 +513,8 @@ TEST(misuse_is_an_error)
     assert_ok(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END));
     assert_int_equal(labial_words_push(&stream, "a", 1, 149 + LABIAL_DURATION_MAX, LABIAL_WORDS_NO_END),
                      LABIAL_ERROR_FULL);
-    assert_int_equal(take_all(&spoken), LABIAL_WAITING);
-    assert_int_equal(until(&spoken, spoken.count), 149 + LABIAL_DURATION_MAX);
+    assert_int_equal(take_all(), LABIAL_WAITING);
+    assert_int_equal(until_now(), 149 + LABIAL_DURATION_MAX);
     assert_int_equal(labial_words_push(&stream, "a", 1, 9, 20), LABIAL_ERROR_WORD);
 }
 

@@ -10,37 +10,21 @@ static int frames(void)
     return 950;
 }
 
-TEST(equal)
-{
-    assert_int_equal(frames() + 0, 800);
-}
+#define FAILS(name, assertion)                                                                                         \
+    TEST(name)                                                                                                         \
+    {                                                                                                                  \
+        assertion;                                                                                                     \
+    }
 
-TEST(negative)
-{
-    const int16_t fap = -7;
-    assert_int_equal(fap, 3);
-}
+static const int16_t fap = -7;
+static const uint32_t most = 0xffffffffu;
 
-TEST(large)
-{
-    const uint32_t most = 0xffffffffu;
-    assert_int_equal(most, -1);
-}
-
-TEST(unequal)
-{
-    assert_int_not_equal(frames(), 950);
-}
-
-TEST(too_low)
-{
-    assert_in_range(-frames(), -900, 900);
-}
-
-TEST(too_high)
-{
-    assert_in_range(frames(), -900, 900);
-}
+FAILS(equal, assert_int_equal(frames() + 0, 800))
+FAILS(negative, assert_int_equal(fap, 3))
+FAILS(large, assert_int_equal(most, -1))
+FAILS(unequal, assert_int_not_equal(frames(), 950))
+FAILS(too_low, assert_in_range(-frames(), -900, 900))
+FAILS(too_high, assert_in_range(frames(), -900, 900))
 
 TEST(drawn)
 {
@@ -49,10 +33,7 @@ TEST(drawn)
     assert_int_equal(frames(), 800);
 }
 
-TEST(not_drawn_any_more)
-{
-    assert_int_equal(frames(), 801);
-}
+FAILS(not_drawn_any_more, assert_int_equal(frames(), 801))
 
 /* Holds: both sides are evaluated once. */
 TEST(once)
