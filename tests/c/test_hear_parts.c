@@ -151,13 +151,7 @@ TEST(full_scale_is_held)
         assert_true(last != 0);
     }
     assert_true(most > 100u && least > 100u);
-}
-
-TEST(other_rates_are_refused)
-{
-    assert_int_equal(labial_hear_convert_init(&convert, 0), LABIAL_ERROR_SAMPLE_RATE);
     assert_int_equal(labial_hear_convert_init(&convert, 11025), LABIAL_ERROR_SAMPLE_RATE);
-    assert_int_equal(labial_hear_convert_init(&convert, 96000), LABIAL_ERROR_SAMPLE_RATE);
 }
 
 /* ---- Features ---------------------------------------------------------------------------------------------------- */

@@ -181,22 +181,6 @@ TEST_AFTER(setup, refuses_states_out_of_order)
     }
 }
 
-/* In every channel; test_model_assumed.c has all values of one. */
-TEST_AFTER(setup, refuses_positions_and_scales_out_of_range)
-{
-    const unsigned last = FIXTURE_SPEECH_STATES - 1;
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++) {
-        REFUSED(int16_t, f.emissions[c][last].mean, LABIAL_POSITION_MAX + 1);
-        REFUSED(int16_t, f.emissions[c][0].mean, -LABIAL_POSITION_MAX - 1);
-        REFUSED(int16_t, f.states[c][0].mean, LABIAL_POSITION_MAX + 1);
-        REFUSED(int16_t, f.states[c][last].mean, -LABIAL_POSITION_MAX - 1);
-        REFUSED(int16_t, f.channels[c].centre, LABIAL_POSITION_MAX + 1);
-        REFUSED(int16_t, f.channels[c].centre, -LABIAL_POSITION_MAX - 1);
-        REFUSED(uint16_t, f.channels[c].shape_scale, 32768);
-        REFUSED(uint16_t, f.channels[c].slope_scale, 16384);
-    }
-}
-
 TEST_AFTER(setup, refuses_floors_out_of_range)
 {
     const unsigned last = FIXTURE_FLOORS * LABIAL_CHANNELS - 1;

@@ -1,6 +1,6 @@
 /*
  * test_shape.c - shape selection (equation 2 and its additions) and moving targets, against doubles; and FAP 17 of the
- * corners: the table of labial/model.h, and frames of their sources.
+ * corners: the table of labial/model.h.
  *
  * The oracle takes costs as the tables state them, in whole units of 1/32 nat, so that what is compared is the choice
  * and the mixture, not the rounding of costs.
@@ -302,21 +302,13 @@ TEST(pairs_add_their_row_and_others_nothing)
     assert_true(added > 100);
 }
 
-/* ---- Followers --------------------------------------------------------------------------------------------------- */
+/* ---- FAP 17 ------------------------------------------------------------------------------------------------------ */
 
-static labial_model_t model;
 static labial_protrusion_t table;
-
-SETUP(setup)
-{
-    model.protrusion = &table;
-    return 0;
-}
 
 static void fill(uint32_t seed, int16_t low, uint16_t gain, uint32_t range)
 {
-    fixture_random_t random;
-    random.state = fixture_seed(seed);
+    fixture_random_t random = { fixture_seed(seed) };
     table.low = low;
     table.gain = gain;
     for (unsigned i = 0; i < LABIAL_PROTRUSION_VALUES; i++)
@@ -346,25 +338,4 @@ TEST(tables_are_interpolated)
         }
 }
 
-/* Would catch channels that end up in the place of others, a spacing that is not kept, corners of another channel. */
-TEST(frames_are_made_of_their_sources)
-{
-    enum { SPACING = 3 };
-    static const uint8_t sources[LABIAL_CHANNELS] = { 0, 1, LABIAL_FROM_CORNERS, 2, 3, 4, 7, 5, 5, 6, 6, 7, 0 };
-    int16_t motion[8 * SPACING], frame[LABIAL_CHANNELS];
-    fill(3, -1000, 900, 4000);
-    memcpy(model.sources, sources, sizeof sources);
-    for (unsigned i = 0; i < COUNT_OF(motion); i++)
-        motion[i] = (int16_t)(100 * (int)i - 700);
-    labial_followers_complete(&model, motion + 1, SPACING, frame);
-    for (unsigned k = 0; k < LABIAL_CHANNELS; k++)
-        if (k == 2)
-            assert_int_equal(frame[k], labial_protrusion(&table, motion[4 * SPACING + 1] + motion[7 * SPACING + 1]));
-        else
-            assert_int_equal(frame[k], motion[sources[k] * SPACING + 1]);
-    model.sources[2] = 3;
-    labial_followers_complete(&model, motion, SPACING, frame);
-    assert_int_equal(frame[2], motion[3 * SPACING]);
-}
-
-SUITE(setup, NULL)
+SUITE(NULL, NULL)

@@ -204,45 +204,6 @@ TEST(workspace_sizes_agree)
     assert_int_equal(labial_workspace_size(NULL), 0);
 }
 
-/* Would catch writes beside the workspace where no sanitizer looks, on a target for instance; also when the workspace
- * is larger than need be, where parts may be counted from its end, or of an odd size; at every stride. */
-TEST(memory_beside_the_workspace_is_untouched)
-{
-    enum { GUARD = 64, EXTRA = 9 };
-    static uint32_t
-        memory[GUARD + LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4 + EXTRA + GUARD];
-    uint8_t *const bytes = (uint8_t *)memory;
-    unsigned extra, i, k;
-    for (unsigned round = 0; round < 24; round++) {
-        labial_t stream;
-        fixture_recorder_t recorder = { 0 };
-        const unsigned stride = 1 + round / 2 % LABIAL_SEARCH_STRIDE_MAX;
-        fixture_model_t *const model = round % 2 ? &slow : &rich;
-        extra = round * 3 % (4 * EXTRA);
-        fixture_slow(&slow);
-        fixture_rich(&rich);
-        model->model.search_stride = (uint8_t)stride;
-        if (round % 3 == 0)
-            fixture_narrow(model, fixture_mirrored);
-        const uint32_t size = labial_workspace_size(&model->model) + extra;
-        memset(memory, 0xc3, sizeof memory);
-        assert_ok(labial_init(&stream, &model->model, memory + GUARD, size, fixture_record, &recorder));
-        for (i = 0, k = 0; k < 10000 && labial_tick(&stream) != LABIAL_DONE; k++) {
-            for (; i < COUNT && labial_room(&stream) > 0; i++)
-                assert_ok(labial_push(&stream, input[i].phoneme, input[i].ms));
-            if (i == COUNT)
-                assert_ok(labial_end(&stream));
-        }
-        assert_true(recorder.count > 100);
-        for (k = 0; k < sizeof memory; k++)
-            if ((k < GUARD * 4 || k >= GUARD * 4 + size) && bytes[k] != 0xc3)
-                fail_msg("byte %ld of a workspace of %u", (long)k - GUARD * 4, size);
-        free(recorder.frames);
-    }
-    fixture_slow(&slow);
-    fixture_rich(&rich);
-}
-
 /* Would catch a workspace that a wider model's channels run out of, and one that has room for them and is not used. */
 TEST(a_model_of_more_channels_needs_room)
 {
