@@ -30,6 +30,9 @@
 #define assert_in_range(found, low, high)                                                                              \
     suite_within(#found, (long long)(found), (long long)(low), (long long)(high), __FILE__, __LINE__)
 
+/* Likewise of numbers in double precision, `most` apart. */
+#define assert_near(found, wanted, most) suite_near(#found, (double)(found), (double)(wanted), most, __FILE__, __LINE__)
+
 /* A call that must succeed. */
 #define assert_ok(call) assert_int_equal(call, LABIAL_OK)
 
@@ -82,6 +85,15 @@ static inline void suite_within(const char *expression, long long found, long lo
     if (found >= low && found <= high)
         return;
     print_error("%s is %lld, not from %lld to %lld", expression, found, low, high);
+    suite_fail(file, line);
+}
+
+static inline void suite_near(const char *expression, double found, double wanted, double most, const char *file,
+                              int line)
+{
+    if (fabs(found - wanted) <= most)
+        return;
+    print_error("%s is %g, not %g", expression, found, wanted);
     suite_fail(file, line);
 }
 

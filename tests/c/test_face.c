@@ -226,8 +226,8 @@ TEST(clock_catches_up)
             give(1900);
             tick(LABIAL_OK);
         }
-        if (count != cases[i].ticks || values[0] - before != cases[i].moved)
-            fail_msg("case %u: %u ticks, %ld units", i, count, (long)(values[0] - before));
+        assert_int_equal(count, cases[i].ticks);
+        assert_int_equal(values[0] - before, cases[i].moved);
     }
 }
 
@@ -392,8 +392,7 @@ static int tick_both(int moves)
             assert_true(change - before[i] <= output->acceleration && before[i] - change <= output->acceleration);
         if (output->acceleration)
             model.value[i] = values[i];
-        if (fabs(model.value[i] - values[i]) > 0)
-            fail_msg("output %u, tick %ld: %ld instead of %.0f", i, model.now, (long)values[i], model.value[i]);
+        assert_near(values[i], model.value[i], 0);
         if (moves)
             before[i] = change;
         else

@@ -60,10 +60,8 @@ static uint32_t wanted_product(int32_t a, int32_t b, int64_t offset, unsigned sh
 static void check_product(int32_t a, int32_t b, unsigned shift)
 {
     const uint32_t wanted = wanted_product(a, b, 0, shift);
-    if ((uint32_t)labial_mulshift(a, b, shift) != wanted)
-        fail_msg("wide: %d * %d >> %u is %d", a, b, shift, labial_mulshift(a, b, shift));
-    if ((uint32_t)narrow_mulshift(a, b, shift) != wanted)
-        fail_msg("narrow: %d * %d >> %u is %d", a, b, shift, narrow_mulshift(a, b, shift));
+    assert_int_equal((uint32_t)labial_mulshift(a, b, shift), wanted);
+    assert_int_equal((uint32_t)narrow_mulshift(a, b, shift), wanted);
 }
 
 /* Would catch a lost carry between the four small products, and rounding that differs from target to target. */
@@ -95,8 +93,7 @@ TEST(parts_are_rounded_alike)
         assert_int_equal((uint32_t)labial_part16(x, f), wanted_product(x, (int32_t)f, 0, 16));
         assert_int_equal(narrow_part16(x, f), labial_part16(x, f));
         assert_int_equal(narrow_part24(x, g), labial_part24(x, g));
-        if ((double)labial_part24(x, g) > exact || (double)labial_part24(x, g) <= exact - 3.0)
-            fail_msg("%d * %u >> 24 is %d, not %g", x, g, labial_part24(x, g), exact);
+        assert_true((double)labial_part24(x, g) <= exact && (double)labial_part24(x, g) > exact - 3.0);
     }
 }
 
@@ -195,8 +192,7 @@ TEST(quotients_are_exact)
     for (unsigned i = 0; i < FIXTURE_ROUNDS(1000000); i++) {
         const uint32_t a = fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32);
         const uint32_t b = (fixture_below(&random, UINT32_MAX) >> fixture_below(&random, 32)) + 1u;
-        if (narrow_quotient(a, b) != a / b)
-            fail_msg("%u / %u is %u", a, b, narrow_quotient(a, b));
+        assert_int_equal(narrow_quotient(a, b), a / b);
     }
 }
 

@@ -291,8 +291,7 @@ TEST(the_face_comes_to_rest_after_the_end)
     for (unsigned f = 0; f < LABIAL_EASE_FRAMES; f++)
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double way = (f + 1.0) / LABIAL_EASE_FRAMES, share = way * way * (3 - 2 * way);
-            const double error = told[count + f][k] - told[count - 1u][k] * (1 - share);
-            assert_true(error > -1.1 && error < 1.1);
+            assert_near(told[count + f][k], told[count - 1u][k] * (1 - share), 1.1);
         }
     assert_ok(labial_hear_restart(&hear));
 }
@@ -453,8 +452,7 @@ TEST(a_restart_fades_and_then_hears_afresh)
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double step = f < 8u ? (f + 1.0) / 9.0 : 1.0, share = step * step * (3 - 2 * step);
             const double last = told[before - 1u][k], wanted = last * (1 - share) + fresh[f][k]; /* which fades, too */
-            const double error = told[before + f][k] - wanted;
-            assert_true(error > -1.6 && error < 1.6);
+            assert_near(told[before + f][k], wanted, 1.6);
         }
     assert_int_equal(told_until(), before + count);
 }
@@ -544,8 +542,7 @@ TEST(articulation_comes_nearer_by_ten)
     for (unsigned t = before; t < count; t++)
         for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
             const double share = t - before < 10u ? 1 - (t - before) / 10.0 : 0;
-            if (fabs(less[t][k] - plain[t][k] * share) > abs(plain[t][k]) * 0.12 + 12)
-                fail_msg("frame %u, channel %u: %d of %d", t, k, less[t][k], plain[t][k]);
+            assert_near(less[t][k], plain[t][k] * share, abs(plain[t][k]) * 0.12 + 12);
         }
     assert_ok(labial_hear_restart(&hear));
     frame_count = 0;

@@ -76,8 +76,8 @@ TEST(laughs_are_those_of_the_reference)
             bytes[3u * count + 1u] = (uint8_t)ms;
             bytes[3u * count + 2u] = (uint8_t)(ms >> 8);
         }
-        if (count != laughs[i].count || fixture_crc32(bytes, 3u * count) != laughs[i].crc)
-            fail_msg("laugh %u is another", i);
+        assert_int_equal(count, laughs[i].count);
+        assert_int_equal(fixture_crc32(bytes, 3u * count), laughs[i].crc);
     }
 }
 
@@ -224,8 +224,7 @@ TEST(trains_are_as_long_as_intensity_and_chance_have_it)
             x ^= x >> 17;
             x ^= x << 5;
             const double wanted = TRAIN_MEDIAN * (2.0 / 3.0) * (1.0 + intensity / 256.0) * (lengths[x >> 27] / 32.0);
-            if (laugh.pulses != (unsigned)(wanted + 0.5 + 1e-9))
-                fail_msg("intensity %u, seed %u: %u pulses, not %g", intensity, (unsigned)seed, laugh.pulses, wanted);
+            assert_int_equal(laugh.pulses, (unsigned)(wanted + 0.5 + 1e-9));
         }
 }
 

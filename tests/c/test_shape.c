@@ -115,9 +115,7 @@ static void compare(unsigned count, unsigned ms, unsigned previous, unsigned nex
         shares[c] /= sum;
     for (unsigned k = 0; k < LABIAL_CHANNELS; k++) {
         const double wanted = oracle(shares, count, ms, k);
-        if (fabs(shape[k].knots[0] - wanted) > tolerance(k, count))
-            fail_msg("%u components, %u ms, channel %u: %d, not %g (+- %g)", count, ms, k, shape[k].knots[0], wanted,
-                     tolerance(k, count));
+        assert_near(shape[k].knots[0], wanted, tolerance(k, count));
         assert_int_equal(shape[k].knots[1], shape[k].knots[0]); /* no pair moves it */
     }
 }
@@ -237,8 +235,7 @@ TEST(targets_are_shapes_kernels_and_floors)
                 wanted = wanted < least ? least : wanted;
             }
             at_ends |= target[k] == LABIAL_POSITION_MAX ? 1u : target[k] == -LABIAL_POSITION_MAX ? 2u : 0u;
-            if (fabs(target[k] - wanted) > 1.01) /* two roundings */
-                fail_msg("%u taps, channel %u: %d, not %g", taps, k, target[k], wanted);
+            assert_near(target[k], wanted, 1.01); /* two roundings */
         }
     }
     assert_true(raised > FIXTURE_ROUNDS(500)); /* floors were met */
@@ -269,9 +266,7 @@ static unsigned compare_pairs(unsigned number, unsigned previous, unsigned next)
             const double before = pair_of(number, previous, 0, j, k), behind = pair_of(number, next, 128, j, k);
             const double wanted = limited(limited(without[k].knots[j] + before) + behind);
             added += before != 0.0 && behind != 0.0;
-            if (fabs(shape[k].knots[j] - wanted) > 1.02)
-                fail_msg("phoneme %u between %u and %u, knot %u, channel %u: %d, not %g", number, previous, next, j, k,
-                         shape[k].knots[j], wanted);
+            assert_near(shape[k].knots[j], wanted, 1.02);
         }
     return added;
 }
@@ -331,9 +326,7 @@ TEST(tables_are_interpolated)
                 const int i = at >= 16 ? 15 : (int)at;
                 const double share = at >= 16 ? 1 : at - i;
                 const double wanted = table.values[i] + share * (table.values[i + 1] - table.values[i]);
-                if (fabs(labial_protrusion(&table, sum) - wanted) > 0.5)
-                    fail_msg("from %d, gain %u: %d for %ld, not %g", lows[l], gains[g], labial_protrusion(&table, sum),
-                             (long)sum, wanted);
+                assert_near(labial_protrusion(&table, sum), wanted, 0.5);
             }
         }
 }

@@ -62,11 +62,9 @@ static const labial_model_t *const models[] = { &speech_en, &laughter_synthetic 
 static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANNELS])
 {
     day_t *d = (day_t *)user;
-    if (frame != d->next)
-        fail_msg("frame %lu came as %lu", (unsigned long)d->next, (unsigned long)frame);
+    assert_int_equal(frame, d->next);
     for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        if (faps[c] < -1500 || faps[c] > 1500)
-            fail_msg("channel %u is at %d", c, faps[c]);
+        assert_in_range(faps[c], -1500, 1500);
     if (d->kept && d->frames < SENTENCE)
         memcpy(d->kept[d->frames], faps, sizeof d->kept[0]);
     d->next++;
@@ -79,8 +77,8 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
 static void paint(uint32_t *words, int check)
 {
     for (uint32_t i = 0; i < CANARIES; i++) {
-        if (check && words[i] != (i + 1u) * 0x9e3779b1u)
-            fail_msg("memory beside a structure or its workspace was written to");
+        if (check)
+            assert_int_equal(words[i], (i + 1u) * 0x9e3779b1u);
         words[i] = (i + 1u) * 0x9e3779b1u;
     }
 }

@@ -18,19 +18,13 @@ SETUP(setup)
     return 0;
 }
 
-static void run(fixture_host_t *host, const labial_model_t *model, size_t count, fixture_feed_t feed)
-{
-    if (fixture_run(host, model, input, count, feed) != 0)
-        fail_msg("feed %d: %s (frame %zu)", (int)feed, host->complaint, host->recorder.count);
-}
-
 /* Would catch a pointer of the structure into itself. The old place is overwritten and freed. */
 TEST(frames_do_not_depend_on_where_the_structure_lies)
 {
     fixture_host_t wanted, host;
     const labial_model_t *model = &rich.model;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 5);
-    run(&wanted, model, COUNT, FIXTURE_CHANCE);
+    assert_played(&wanted, fixture_run(&wanted, model, input, COUNT, FIXTURE_CHANCE));
     assert_ok(fixture_open(&host, &model, 1));
     host.moving = 1;
     assert_played(&host, fixture_play(&host, input, COUNT, FIXTURE_CHANCE));
@@ -45,8 +39,9 @@ TEST(frames_do_not_depend_on_what_memory_held)
     fixture_host_t wanted, host;
     const uint32_t size = labial_workspace_size(&rich.model);
     fixture_stream(input, 40, FIXTURE_RANDOM, 8);
-    run(&wanted, &rich.model, 40, FIXTURE_FILL);
-    run(&host, &rich.model, 40, FIXTURE_FILL); /* the stream is used, then initialised anew */
+    assert_played(&wanted, fixture_run(&wanted, &rich.model, input, 40, FIXTURE_FILL));
+    assert_played(&host, fixture_run(&host, &rich.model, input, 40,
+                                     FIXTURE_FILL)); /* the stream is used, then initialised anew */
     memset(host.workspace, 0xff, size);
     assert_ok(fixture_open_again(&host));
     assert_played(&host, fixture_play(&host, input, 40, FIXTURE_FILL));
@@ -87,8 +82,7 @@ TEST(two_streams_do_not_disturb_each_other)
         }
     }
     for (unsigned i = 0; i < 2; i++) {
-        if (together[i].complaint)
-            fail_msg("%s", together[i].complaint);
+        assert_played(&together[i], together[i].complaint ? -1 : 0);
         assert_int_equal(fixture_difference(&alone[i].recorder, &together[i].recorder), -1);
         fixture_close(&alone[i]);
         fixture_close(&together[i]);

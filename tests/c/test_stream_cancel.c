@@ -44,8 +44,7 @@ static size_t drain(fixture_host_t *host)
         assert_ok(result);
         assert_true(host->recorder.count - before <= 1000);
     }
-    if (host->complaint)
-        fail_msg("%s", host->complaint);
+    assert_played(host, host->complaint ? -1 : 0);
     assert_int_equal(fixture_tick(host), LABIAL_DONE);
     return host->recorder.count - before;
 }
@@ -86,9 +85,7 @@ TEST(easing_takes_the_time_asked_for_rounded_up)
         fixture_host_t host;
         begin(&host, cases[i].rate, 30);
         fixture_cancel(&host, cases[i].ms);
-        const size_t frames = drain(&host);
-        if (frames != cases[i].frames)
-            fail_msg("%u frames/s, %u ms: %zu frames, not %zu", cases[i].rate, cases[i].ms, frames, cases[i].frames);
+        assert_int_equal(drain(&host), cases[i].frames);
         assert_true(is_neutral(host.recorder.frames[host.recorder.count - 1]));
         fixture_close(&host);
     }

@@ -50,15 +50,12 @@ static void foretell(const labial_model_t *const *models, unsigned model_count, 
         else
             wanted = moved > delay ? LABIAL_STARVED : LABIAL_WAITING;
         got = fixture_tick(&host);
-        if (got != wanted)
-            fail_msg("seed %u: a tick says %d, not %d, after %zu of %zu frames, %zu taken", seed, got, wanted,
-                     host.recorder.count, count, taken);
+        assert_int_equal(got, wanted);
         starved += got == LABIAL_STARVED;
         waited += got == LABIAL_WAITING;
     }
     assert_int_equal(host.recorder.count, count);
-    if (host.complaint)
-        fail_msg("seed %u: %s", seed, host.complaint);
+    assert_played(&host, host.complaint ? -1 : 0);
     fixture_close(&host);
 }
 
@@ -121,15 +118,13 @@ TEST(an_hour_of_silence_is_played_as_it_comes)
         assert_int_equal(fixture_tick(&host), LABIAL_WAITING);
 #if LABIAL_REACH >= 4
     for (size_t i = 0; i < hour - 100; i++)
-        if (fixture_tick(&host) != LABIAL_OK)
-            fail_msg("frame %zu is late: %s", i, host.complaint ? host.complaint : "");
+        assert_ok(fixture_tick(&host));
 #endif
     fixture_end(&host);
     while (fixture_tick(&host) != LABIAL_DONE)
         assert_true(host.recorder.count <= hour + 5);
     assert_int_equal(host.recorder.count, hour + 5);
-    if (host.complaint)
-        fail_msg("%s", host.complaint);
+    assert_played(&host, host.complaint ? -1 : 0);
     fixture_close(&host);
 }
 

@@ -168,10 +168,9 @@ TEST(a_failed_init_makes_the_stream_unusable)
     for (unsigned i = 0; i < COUNT_OF(calls); i++) {
         assert_ok(labial_init(stream, &plain.model, workspace, size, fixture_record, &recorder));
         assert_ok(labial_push(stream, FIXTURE_A, 100));
-        const int got =
-            labial_init(stream, calls[i].model, calls[i].workspace, calls[i].size, calls[i].callback, &recorder);
-        if (got != calls[i].wanted)
-            fail_msg("case %u: %d, not %d", i, got, calls[i].wanted);
+        assert_int_equal(
+            labial_init(stream, calls[i].model, calls[i].workspace, calls[i].size, calls[i].callback, &recorder),
+            calls[i].wanted);
         check_refuses(stream, LABIAL_ERROR_STATE);
     }
     assert_int_equal(labial_init(NULL, &plain.model, workspace, size, fixture_record, &recorder), LABIAL_ERROR_NULL);

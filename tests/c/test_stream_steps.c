@@ -39,27 +39,22 @@ SETUP(setup)
     return 0;
 }
 
-static void judge(const fixture_recorder_t *recorder, size_t first, size_t count, double tolerance, const char *what,
-                  unsigned seed)
+static void judge(const fixture_recorder_t *recorder, size_t first, size_t count, double tolerance)
 {
-    if (recorder->count - first != count)
-        fail_msg("%s, seed %u: %zu frames, not %zu", what, seed, recorder->count - first, count);
+    assert_int_equal(recorder->count - first, count);
     for (size_t t = 0; t < count; t++)
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-            if (fabs(recorder->frames[first + t][c] * 16.0 - wanted[t][c]) > tolerance)
-                fail_msg("%s, seed %u: frame %zu of %zu, channel %u is %d, not %g", what, seed, t, count, c,
-                         recorder->frames[first + t][c], wanted[t][c] / 16.0);
+            assert_near(recorder->frames[first + t][c] * 16.0, wanted[t][c], tolerance);
 }
 
-static void compare(unsigned model_count, size_t count, const char *what, unsigned seed)
+static void compare(unsigned model_count, size_t count, unsigned seed)
 {
     fixture_host_t host;
     assert_ok(fixture_open(&host, models, model_count));
     host.random.state = seed + 1;
-    if (fixture_play(&host, input, count, seed % 2 ? FIXTURE_FILL : FIXTURE_CHANCE) != 0)
-        fail_msg("%s: %s", what, host.complaint);
+    assert_played(&host, fixture_play(&host, input, count, seed % 2 ? FIXTURE_FILL : FIXTURE_CHANCE));
     judge(&host.recorder, 0, oracle_stream(models, input, count, NULL, NULL, wanted, MAX_FRAMES),
-          model_count > 1 ? FADED_TOLERANCE : TOLERANCE, what, seed);
+          model_count > 1 ? FADED_TOLERANCE : TOLERANCE);
     fixture_close(&host);
 }
 
@@ -71,7 +66,7 @@ TEST(one_model_is_the_sum_of_its_steps)
             fixture_stream(input, COUNT, (fixture_kind_t)kind, seed);
             for (unsigned i = 0; kind == FIXTURE_PAUSES && i < COUNT; i++)
                 input[i].ms %= 2500;
-            compare(1, COUNT, "one model", seed);
+            compare(1, COUNT, seed);
         }
     }
 }
@@ -85,9 +80,9 @@ TEST(every_stride_is_the_sum_of_its_steps)
         f->model.search_stride = (uint8_t)stride;
         models[0] = &f->model;
         fixture_stream(input, COUNT, FIXTURE_RANDOM, stride);
-        compare(1, COUNT, "strides", stride);
+        compare(1, COUNT, stride);
         fixture_stream(input, COUNT, FIXTURE_ONE_FRAME, stride);
-        compare(1, COUNT, "strides", stride);
+        compare(1, COUNT, stride);
         f->model.search_stride = own;
     }
 }
@@ -101,7 +96,7 @@ TEST(short_streams_are_the_sum_of_their_steps)
         rich.model.search_stride = (uint8_t)stride;
         for (size_t count = 0; count <= 40; count++) {
             fixture_stream(input, count, FIXTURE_ONE_FRAME, stride + (unsigned)count);
-            compare(1, count, "short", stride);
+            compare(1, count, stride);
         }
     }
     rich.model.search_stride = FIXTURE_STRIDE;
@@ -121,7 +116,7 @@ TEST(channels_follow_those_of_the_same_frame)
         models[0] = &f->model;
         for (unsigned k = 0; k < COUNT_OF(kinds); k++) {
             fixture_stream(input, COUNT, kinds[k], stride);
-            compare(1, COUNT, "followers", stride);
+            compare(1, COUNT, stride);
         }
         f->model.search_stride = own;
     }
@@ -151,7 +146,7 @@ TEST(two_models_are_the_sum_of_their_steps)
             input[i].model = i == 0 ? 0 : model;
             input[i].phoneme = (uint8_t)(input[i].phoneme % (model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
         }
-        compare(2, COUNT, "two models", seed);
+        compare(2, COUNT, seed);
         f->model.search_stride = own;
         other->model.search_stride = FIXTURE_STRIDE;
     }
@@ -175,8 +170,7 @@ TEST(rounds_are_the_sum_of_their_steps)
             fixture_restart(&host);
         assert_played(&host, fixture_play(&host, input, count, FIXTURE_FILL));
         judge(&host.recorder, first,
-              oracle_stream(models, input, count, first > 0 ? held : NULL, NULL, wanted, MAX_FRAMES), FADED_TOLERANCE,
-              "rounds", round);
+              oracle_stream(models, input, count, first > 0 ? held : NULL, NULL, wanted, MAX_FRAMES), FADED_TOLERANCE);
         for (unsigned c = 0; c < LABIAL_CHANNELS; c++) /* unrounded, for it tells what is near rest */
             held[c] = host.stream->fade.pose[c];
     }
@@ -204,15 +198,14 @@ static void tell_by_chance(uint32_t seed)
 }
 
 /* With twice the error of equation 3, as at the largest articulation. */
-static void compare_told(unsigned model_count, double tolerance, const char *what, unsigned seed)
+static void compare_told(unsigned model_count, double tolerance, unsigned seed)
 {
     fixture_host_t host;
     assert_ok(fixture_open(&host, models, model_count));
     tell_by_chance(seed + 1);
-    if (fixture_play_told(&host, input, ARTICULATED, told, MAX_TOLD) != 0)
-        fail_msg("%s, seed %u: %s", what, seed, host.complaint);
-    judge(&host.recorder, 0, oracle_stream(models, input, ARTICULATED, NULL, told, wanted, MAX_FRAMES), tolerance + 1.6,
-          what, seed);
+    assert_played(&host, fixture_play_told(&host, input, ARTICULATED, told, MAX_TOLD));
+    judge(&host.recorder, 0, oracle_stream(models, input, ARTICULATED, NULL, told, wanted, MAX_FRAMES),
+          tolerance + 1.6);
     fixture_close(&host);
 }
 
@@ -229,7 +222,7 @@ TEST(articulated_streams_are_the_sum_of_their_steps)
         fixture_stream(input, ARTICULATED, kinds[seed % 3], seed);
         for (unsigned i = 0; i < ARTICULATED; i++)
             input[i].ms %= 400;
-        compare_told(1, TOLERANCE, "one model, articulated", seed);
+        compare_told(1, TOLERANCE, seed);
         f->model.search_stride = own;
     }
 }
@@ -251,7 +244,7 @@ TEST(two_articulated_models_are_the_sum_of_their_steps)
             input[i].ms = 20 + input[i].ms % 300; /* a frame each, so that the queue is never starved */
             input[i].phoneme = (uint8_t)(input[i].phoneme % (model ? FIXTURE_LAUGH_COUNT : FIXTURE_SPEECH_COUNT));
         }
-        compare_told(2, FADED_TOLERANCE, "two models, articulated", seed);
+        compare_told(2, FADED_TOLERANCE, seed);
     }
 #else
     (void)random;

@@ -22,14 +22,13 @@ static double worst, sum_of_squares;
 static unsigned long compared;
 
 /* The limits that the solver is promised: labial_model_check() itself says whether a test keeps to them. */
-static void require_accepted(const char *what, unsigned round)
+static void require_accepted(void)
 {
     for (unsigned q = STATES; q < LABIAL_STATES_MAX; q++)
         states[q] = states[0];
     model.channels[0].states = states;
     channel = model.channels[0];
-    if (labial_model_check(&model.model) != LABIAL_OK)
-        fail_msg("%s, round %u: the test's own weights are out of range", what, round);
+    assert_ok(labial_model_check(&model.model));
 }
 
 /* The library's forward pass, on a solver that holds what another solution left: runs of frames of one state together,
@@ -68,27 +67,24 @@ static double most_gain(void)
 
 /* An error in FAP units must be .1 at most, in proportion to the largest articulation beyond 1; motion beyond 16 bits must
  * be at their end. */
-static void judge(const char *what, unsigned round, unsigned length, unsigned t, int got, double wanted)
+static void judge(int got, double wanted)
 {
-    const double limited = wanted > INT16_MAX ? INT16_MAX : wanted < -INT16_MAX ? -INT16_MAX : wanted;
-    const double error = fabs(got - limited) / 16.0;
-    if (error > 0.1 * most_gain())
-        fail_msg("%s, round %u, %u frames: frame %u is %g FAP, not %g", what, round, length, t, got / 16.0,
-                 limited / 16.0);
+    const double limited = fixture_limited(wanted, -INT16_MAX, INT16_MAX), error = fabs(got - limited) / 16.0;
+    assert_near(got / 16.0, limited / 16.0, 0.1 * most_gain());
     worst = error > worst ? error : worst;
     sum_of_squares += error * error;
     compared++;
 }
 
 /* Whole solutions, and such as go back from `window` frames ahead. */
-static void compare(unsigned length, const char *what, unsigned round)
+static void compare(unsigned length, unsigned round)
 {
     static int16_t motion[FRAMES];
     labial_factors_t before[FRAMES + 2], *factors = before + 1; /* to either side what must stay as it is */
     const unsigned window = round % 2 ? LABIAL_WINDOW : round % 13;
     double wanted[FRAMES];
     size_t start[FRAMES];
-    require_accepted(what, round);
+    require_accepted();
     memset(before, 0x3c, sizeof before);
     go_forward(length, 1 + round % 9, factors);
     assert_int_equal(factors[-1].q, 0x3c3c3c3c);
@@ -97,7 +93,7 @@ static void compare(unsigned length, const char *what, unsigned round)
     memset(motion, 0x77, sizeof motion);
     labial_trajectory_back(factors + length - 1, 0, length, length - 1, FRAMES, motion);
     for (unsigned t = 0; t < length; t++)
-        judge(what, round, length, t, motion[t], wanted[t]);
+        judge(motion[t], wanted[t]);
     for (unsigned i = length; i < FRAMES; i++)
         assert_int_equal(motion[i], 0x7777); /* other frames are not its own */
     for (unsigned t = 0; t < length; t++)
@@ -105,7 +101,7 @@ static void compare(unsigned length, const char *what, unsigned round)
     oracle_trajectory(&channel, path, target, contact, 0, gain, length, start, wanted);
     for (unsigned t = 0; t < length; t++) {
         labial_trajectory_back(factors + start[t], (unsigned)start[t] - t, 1, 0, 1, motion);
-        judge(what, round, length, t, motion[0], wanted[t]);
+        judge(motion[0], wanted[t]);
     }
 }
 
@@ -236,8 +232,7 @@ TEST(reciprocals_have_24_bits)
                 block < blocks ? (i << 24) + (block << 15) : ((i + 1u) << 24) - ((block + 1u - blocks) << 15);
             for (unsigned k = 0; k < 512; k += 2) {
                 const double lost = 18014398509481984.0 / (first + k) - reciprocal_of(first + k);
-                if (lost > most || lost < -0.1)
-                    fail_msg("2^54 / %u: %.3f is lost, more than %.3f", first + k, lost, most);
+                assert_true(lost <= most && lost >= -0.1);
             }
         }
     }
@@ -252,7 +247,7 @@ TEST(ordinary_weights)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(1500); round++) {
         make(&random, 600, 4, 0.02, 0);
         walk(&random, 0, 0);
-        compare(1 + round % FRAMES, "ordinary", round);
+        compare(1 + round % FRAMES, round);
     }
     assert_true(compared > FIXTURE_ROUNDS(10000));
     assert_true(sqrt(sum_of_squares / (double)compared) < 0.03); /* rounding to 1/16 alone is 0.018 */
@@ -266,7 +261,7 @@ TEST(any_weights_within_the_limits)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(6000); round++) {
         make(&random, holds[round % 6], LABIAL_STIFFNESS_MAX, round / 6 % 3 / 2.0, 0);
         walk(&random, round / 18 % 2, round / 36 % 2);
-        compare(1 + round % 7 * 59 / 6, "any", round);
+        compare(1 + round % 7 * 59 / 6, round);
     }
 }
 
@@ -279,7 +274,7 @@ TEST(every_bound)
     for (unsigned round = 0; round < FIXTURE_ROUNDS(8000); round++) {
         make(&random, holds[round % 8], LABIAL_STIFFNESS_MAX, round / 8 % 2, 1);
         walk(&random, round / 16 % 2, round / 32 % 3 > 0);
-        compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, "bounds", round);
+        compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, round);
     }
     print_message("worst error %.4f FAP\n", worst);
 }
@@ -299,7 +294,7 @@ TEST(every_articulation)
                       : t > 0 && round % 4 == 1            ? 512 - gain[t - 1]
                       : t > 0 && fixture_below(&random, 3) ? gain[t - 1]
                                                            : gains[fixture_below(&random, 8)];
-        compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, "articulation", round);
+        compare(round % 5 ? FRAMES : 1 + round / 5 % FRAMES, round);
     }
     for (unsigned t = 0; t < FRAMES; t++)
         gain[t] = LABIAL_GAIN_ONE;
@@ -326,7 +321,7 @@ TEST(the_largest_diagonals)
                 states[q].weight[0] = (uint8_t)d;
                 states[q].weight[1] = (uint8_t)dd;
             }
-            compare(12, "at the bound", dd);
+            compare(12, dd);
         }
 }
 
@@ -344,12 +339,11 @@ TEST(what_rests_stays_at_rest)
             states[q].mean = place;
         for (unsigned t = 0; t < FRAMES; t++)
             target[t] = place;
-        require_accepted("rest", round);
+        require_accepted();
         go_forward(FRAMES, FRAMES, factors);
         labial_trajectory_back(factors + FRAMES - 1, 0, FRAMES, FRAMES - 1, FRAMES, motion);
         for (unsigned t = 0; t < FRAMES; t++)
-            if (motion[t] != place + channel.centre)
-                fail_msg("round %u: frame %u is %d, not %d", round, t, motion[t], place + channel.centre);
+            assert_int_equal(motion[t], place + channel.centre);
     }
 }
 
@@ -365,15 +359,15 @@ TEST(solutions_are_not_coupled)
         int16_t motion[FRAMES];
         make(&random, round % 2 ? 126 : 8000, LABIAL_STIFFNESS_MAX, round % 3 / 2.0, 0);
         walk(&random, 0, round / 2 % 2);
-        require_accepted("two", round);
+        require_accepted();
         go_forward(first, 3, factors);
         oracle_trajectory(&channel, path, target, contact, 0, gain, first, NULL, wanted);
         walk(&random, 0, 1);
-        require_accepted("two", round);
+        require_accepted();
         go_forward(second, 3, factors + first);
         labial_trajectory_back(factors + first + second - 1, second, first, round % 7, 7, motion);
         for (unsigned t = 0; t < first && t < 7; t++) /* the earliest seven overwrite the others */
-            judge("two", round, first, t, motion[(round % 7 + 7 - (first - 1 - t) % 7) % 7], wanted[t]);
+            judge(motion[(round % 7 + 7 - (first - 1 - t) % 7) % 7], wanted[t]);
     }
 }
 

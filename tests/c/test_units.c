@@ -89,8 +89,7 @@ static void check_place(const labial_taken_t *taken, const oracle_frame_t *frame
         open += taken->is_open;
     }
     was_open = taken->is_open;
-    if (taken->rest != frame->rest)
-        fail_msg("frame %zu: rest %u, not %u", at, taken->rest, frame->rest);
+    assert_int_equal(taken->rest, frame->rest);
     rested += frame->rest == 16;
 }
 
@@ -113,11 +112,11 @@ static void compare_next(size_t at, size_t count, int ended, int must)
         return;
     assert_true(at < count);
     frame = &wanted[at];
-    if (spoken.slot != frame->model || spoken.phoneme != frame->phoneme || spoken.previous != frame->previous ||
-        spoken.next != frame->next || spoken.ms != frame->ms)
-        fail_msg("frame %zu: phoneme %u of model %u, %u before, %u behind, %u ms, not %u of %u, %u, %u, %u", at,
-                 spoken.phoneme, spoken.slot, spoken.previous, spoken.next, spoken.ms, frame->phoneme, frame->model,
-                 frame->previous, frame->next, frame->ms);
+    assert_int_equal(spoken.slot, frame->model);
+    assert_int_equal(spoken.phoneme, frame->phoneme);
+    assert_int_equal(spoken.previous, frame->previous);
+    assert_int_equal(spoken.next, frame->next);
+    assert_int_equal(spoken.ms, frame->ms);
 }
 
 /* What is taken must be the oracle's frame `at`. */
@@ -130,14 +129,12 @@ static void compare(const labial_taken_t *taken, size_t at, size_t count)
     const int ahead = (model->kernel_taps ? model->kernel_taps - 1 - model->kernel_behind : 0) * model->kernel_stride;
     const int behind = model->kernel_behind * model->kernel_stride;
     check_place(taken, frame, at);
-    if (taken->slot != frame->model || taken->is_first != frame->is_first || taken->marks != marks)
-        fail_msg("frame %zu: model %u, first %u, marks %u, not %u, %d, %u", at, taken->slot, taken->is_first,
-                 taken->marks, frame->model, frame->is_first, marks);
+    assert_int_equal(taken->slot, frame->model);
+    assert_int_equal(taken->is_first, frame->is_first);
+    assert_int_equal(taken->marks, marks);
     for (int k = model->floor_count && behind < 2 ? -2 : -behind; k <= (model->floor_count && ahead < 3 ? 3 : ahead);
          k++)
-        if (taken->labels[k] != oracle_label(models, wanted, count, at, k))
-            fail_msg("frame %zu: %d from it is phoneme %u, not %u", at, k, taken->labels[k],
-                     oracle_label(models, wanted, count, at, k));
+        assert_int_equal(taken->labels[k], oracle_label(models, wanted, count, at, k));
     cuts += frame->is_first && at > 0 && !frame->begins && frame->previous == model->silence &&
             wanted[at - 1].phoneme == model->silence;
     compared++;
@@ -165,13 +162,11 @@ static void follow(int kind, uint32_t seed, int hungry)
         if (at == count) {
             assert_int_equal(result, ended ? LABIAL_DONE : LABIAL_STARVED);
         } else if (ended || pushed >= wanted[at].needs) {
-            if (result != LABIAL_OK)
-                fail_msg("kind %d, seed %u: frame %zu of %zu is not taken", kind, seed, at, count);
+            assert_ok(result);
             compare(&taken, at++, count);
         } else {
-            if (result != LABIAL_STARVED)
-                fail_msg("kind %d, seed %u: frame %zu of %zu is taken too early", kind, seed, at, count);
-            assert_true(units.count < LABIAL_QUEUE); /* a full queue never waits */
+            assert_int_equal(result, LABIAL_STARVED); /* else it was taken too early */
+            assert_true(units.count < LABIAL_QUEUE);  /* a full queue never waits */
             waits++;
         }
     }
@@ -224,10 +219,8 @@ TEST(shares_of_the_longest_phoneme_ascend)
         begin(&fast);
         assert_int_equal(labial_units_push(&units, FIXTURE_S, 0, lengths[i] * 4u, 250), lengths[i]);
         for (uint32_t n = 0; n < lengths[i]; n++) {
-            const double exact = 16384.0 * (n + 0.5) / lengths[i];
             assert_ok(labial_units_take(&units, models, 1, &taken));
-            if (taken.share > exact + 1.6 || taken.share < exact - 1.6) /* to halving, 1 in 32,768 */
-                fail_msg("frame %u of %u: share %u, not %g", n, lengths[i], taken.share, exact);
+            assert_near(taken.share, 16384.0 * (n + 0.5) / lengths[i], 1.6); /* to halving, 1 in 32,768 */
         }
         assert_int_equal(labial_units_take(&units, models, 1, &taken), LABIAL_DONE);
     }

@@ -89,8 +89,7 @@ static void compare(unsigned from, unsigned to)
 {
     for (unsigned t = from; t < to; t++)
         for (unsigned v = 0; v < LABIAL_VISEMES; v++)
-            if (fabs(found[t][v] / (double)LABIAL_VISEME_ONE - expected((int)t, v)) > 0.51 / LABIAL_VISEME_ONE + 1e-4)
-                fail_msg("frame %u, viseme %u: %u, not %.2f", t, v, found[t][v], 128 * expected((int)t, v));
+            assert_near(found[t][v] / (double)LABIAL_VISEME_ONE, expected((int)t, v), 0.51 / LABIAL_VISEME_ONE + 1e-4);
 }
 
 /* Would catch shares of another frame than the delivered one, a slope on the wrong side, sounds that are not yet known, and
