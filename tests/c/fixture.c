@@ -426,6 +426,20 @@ int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate)
 
 /* ---- Rigs in doubles ---- */
 
+labial_rig_output_t fixture_jaw(int32_t maximum, int32_t slew, int32_t acceleration)
+{
+    const labial_rig_output_t output = { .weights = { [4] = -LABIAL_RIG_ONE }, /* FAP 52 */
+                                         .contact = 1,
+                                         .gain = LABIAL_RIG_GAIN(1, 1),
+                                         .neutral = 1400,
+                                         .minimum = 1400,
+                                         .maximum = maximum,
+                                         .slew = slew,
+                                         .closed = 1400,
+                                         .acceleration = acceleration };
+    return output;
+}
+
 double fixture_limited(double value, double low, double high)
 {
     return value < low ? low : value > high ? high : value;

@@ -159,6 +159,9 @@ int fixture_is_exact(uint64_t frames, uint64_t ms, unsigned rate);
 
 /* ---- Rigs (labial/rig.h) in doubles ---- */
 
+/* A jaw that is closed at 1400, and opens by one unit for each by which the lower lip does, up to a `maximum`. */
+labial_rig_output_t fixture_jaw(int32_t maximum, int32_t slew, int32_t acceleration);
+
 double fixture_limited(double value, double low, double high);
 
 /* Where an output is at rest, and where it belongs with these FAPs and sounds, or null, without limits of its motion. */

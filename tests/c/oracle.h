@@ -34,6 +34,10 @@ unsigned oracle_label(const labial_model_t *const *models, const oracle_frame_t 
 void oracle_shape(const labial_model_t *model, unsigned phoneme, unsigned ms, unsigned previous, unsigned next,
                   labial_shape_t *shape);
 
+/* Whether a contact of `whole` frames is made in frame `number`: in as many in the middle as half of them, rounded up, or
+ * three, or all but seven; an odd frame is left at the end. */
+int oracle_is_made(uint64_t number, uint64_t whole);
+
 /* The targets of a whole stream, and bit by bit the channels in contact. Shapes and what is added to them are
  * lib/shape.c's own, of models without floors; floors, contact and rest are put upon them here, phoneme by phoneme. */
 void oracle_targets(const labial_model_t *const *models, const oracle_frame_t *frames, size_t count,

@@ -166,9 +166,7 @@ static void aim(const labial_model_t *const *models, const oracle_frame_t *frame
     (void)labial_shape_target(&bare, shape, &taken, target);
 }
 
-/* Whether a contact of `whole` frames is made in frame `number`: in as many in the middle as half of them, rounded up, or
- * three, or all but seven; an odd frame is left at the end. */
-static int is_made(uint64_t number, uint64_t whole)
+int oracle_is_made(uint64_t number, uint64_t whole)
 {
     uint64_t outside = 0; /* frames */
     while (outside < OPEN && whole - outside > SHORT && 2 * (outside + 1) <= whole)
@@ -182,7 +180,7 @@ static unsigned keep_floors(const labial_model_t *model, const oracle_frame_t *f
     const int16_t *floor = floor_of(model, frame->phoneme);
     const unsigned contacts = contacts_of(model, frame->phoneme);
     const int is_silent = frame->phoneme == model->silence;
-    const int is_closed = !is_silent && is_made(frame->number, frame->whole);
+    const int is_closed = !is_silent && oracle_is_made(frame->number, frame->whole);
     for (unsigned k = 0; floor && k < model->channel_count; k++) {
         const int is_contact = contacts >> k & 1;
         if (is_contact && is_silent)

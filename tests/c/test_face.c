@@ -25,25 +25,10 @@ static labial_rig_output_t outputs[OUTPUTS];
 static labial_rig_t rig = { outputs, 1 };
 static int32_t values[OUTPUTS + 1];
 
-/* A jaw without limits of its motion: 1400 at rest, 1 unit for each unit of the lips' opening beyond contact. */
-static labial_rig_output_t jaw(int32_t slew, int32_t acceleration)
-{
-    const labial_rig_output_t output = { .weights = { [FAP52] = -LABIAL_RIG_ONE },
-                                         .contact = 1,
-                                         .gain = LABIAL_RIG_GAIN(1, 1),
-                                         .neutral = JAW_REST,
-                                         .minimum = JAW_REST,
-                                         .maximum = JAW_WIDE,
-                                         .slew = slew,
-                                         .closed = JAW_REST,
-                                         .acceleration = acceleration };
-    return output;
-}
-
 /* The first tests have one jaw, and begin a face of it. */
 static void begin(int32_t slew, int32_t acceleration, unsigned ahead)
 {
-    outputs[0] = jaw(slew, acceleration);
+    outputs[0] = fixture_jaw(JAW_WIDE, slew, acceleration);
     rig.count = 1;
     memset(memory, 0xa5, sizeof memory);
     memory[LABIAL_FACE_SIZE(1, ahead) / 4] = CANARY;

@@ -17,21 +17,6 @@ static labial_rig_output_t plain(void)
     return output;
 }
 
-/* A jaw that is closed at 1400, and opens by one unit for each by which the lower lip does. */
-static labial_rig_output_t jaw(int32_t slew, int32_t acceleration)
-{
-    const labial_rig_output_t output = { .weights = { [FAP52] = -LABIAL_RIG_ONE },
-                                         .contact = 1,
-                                         .gain = LABIAL_RIG_GAIN(1, 1),
-                                         .neutral = 1400,
-                                         .minimum = 1400,
-                                         .maximum = 2000,
-                                         .slew = slew,
-                                         .closed = 1400,
-                                         .acceleration = acceleration };
-    return output;
-}
-
 /* The value of an output that stood at `last` when FAP 3 becomes `fap3`. */
 static int32_t moved(const labial_rig_output_t *output, int32_t last, int16_t fap3)
 {
@@ -86,7 +71,7 @@ TEST(looking_ahead_closes_in_time)
         { LABIAL_RIG_VALUE_MAX, 2000, 0, 12, 1600, 1600 }, /* far ahead, where the room is as large as can be */
         { 150, 2000, 7, 2, 1600, 1750 },                   /* from below: wanted 1850, 150 short of 2000 */
     };
-    labial_rig_output_t output = jaw(40, 0);
+    labial_rig_output_t output = fixture_jaw(2000, 40, 0);
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[12][LABIAL_CHANNELS] = { { 0 } };
     int32_t blind = 1400, seeing = 1400, value;
@@ -154,7 +139,7 @@ TEST(sight_is_32_frames)
 {
     enum { CLOSES = 90, FASTEST = 10 * LABIAL_RIG_SIGHT };
     static int16_t frames[CLOSES + 2 * LABIAL_RIG_SIGHT][LABIAL_CHANNELS];
-    labial_rig_output_t output = jaw(0, 10);
+    labial_rig_output_t output = fixture_jaw(2000, 0, 10);
     const labial_rig_t rig = { &output, 1 };
     int32_t value = 0, change = 0, most = 0;
     output.gain = LABIAL_RIG_GAIN(10, 1);
@@ -183,7 +168,7 @@ TEST(sight_is_32_frames)
  * where it must, comes to rest there and goes no further; with nothing in sight it is late, and does not go beyond. */
 TEST(acceleration_comes_to_rest)
 {
-    labial_rig_output_t output = jaw(60, 20);
+    labial_rig_output_t output = fixture_jaw(2000, 60, 20);
     const labial_rig_t rig = { &output, 1 };
     int16_t frames[24][LABIAL_CHANNELS] = { { 0 } };
     assert_ok(labial_rig_check(&rig));

@@ -158,33 +158,17 @@ TEST_AFTER(begin, a_cancel_goes_on_from_what_was_shown)
     }
 }
 
-/* Before the first frame, and in the frames of another model, all is silence. */
+/* Before the first frame, and in the frames of another model, all is silence, but at most what follows. */
 TEST_AFTER(begin, another_model_is_silence)
 {
     uint8_t shares[LABIAL_VISEMES + 1];
     memset(shares, 7, sizeof shares);
-    assert_ok(labial_visemes(&stream, &rich.model, visemes, shares));
-    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_int_equal(shares[LABIAL_VISEMES], 7);
-    labial_exact(&stream, 1);
-    assert_ok(labial_visemes(&stream, &rich.model, visemes, shares));
-    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_ok(labial_use(&stream, &laughter.model));
-    say(FIXTURE_HA, 40, 0);
-    labial_end(&stream);
-    run();
-    assert_int_equal(frames, known);
-    for (unsigned t = 0; t < frames; t++)
-        assert_int_equal(found[t][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-    assert_ok(labial_restart(&stream));
-    assert_ok(labial_visemes(&stream, &laughter.model, visemes, shares));
-    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
-}
-
-/* Frames of a model show its sounds, where it is not about to change; those of another one at most what follows. */
-TEST_AFTER(begin, sounds_are_those_of_the_frames_model)
-{
-    labial_exact(&stream, 1);
+    for (int exact = 0; exact < 2; exact++) {
+        labial_exact(&stream, exact);
+        assert_ok(labial_visemes(&stream, &rich.model, visemes, shares));
+        assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+        assert_int_equal(shares[LABIAL_VISEMES], 7);
+    }
     for (unsigned turn = 0; turn < 3; turn++) {
         assert_ok(labial_use(&stream, turn % 2u ? &laughter.model : &rich.model));
         say(FIXTURE_A, 40, 0);
@@ -193,8 +177,12 @@ TEST_AFTER(begin, sounds_are_those_of_the_frames_model)
     run();
     assert_int_equal(frames, known);
     assert_int_equal(found[20][LABIAL_VISEME_AA], LABIAL_VISEME_ONE);
-    assert_int_equal(found[60][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
+    for (unsigned t = 50; t < 70; t++)
+        assert_int_equal(found[t][LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
     assert_int_equal(found[100][LABIAL_VISEME_AA], LABIAL_VISEME_ONE);
+    assert_ok(labial_restart(&stream));
+    assert_ok(labial_visemes(&stream, &laughter.model, visemes, shares));
+    assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
 }
 
 /* A model that was changed under way: phonemes that it no longer has say nothing. */
