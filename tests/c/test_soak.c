@@ -33,16 +33,55 @@
 #define FADE 8u       /* frames in which a stream that is taken up again comes from its last pose */
 #define SENTENCE 400u /* frames that are kept of it, at most */
 
-typedef struct {
+#define SERVOS 2
+#define AHEAD 5
+#define KEPT 64u /* frames that the player's ring and the server remember */
+#define PLACES 400
+
+static struct {
     uint32_t before[CANARIES];
     labial_t stream;
     uint32_t between[CANARIES];
     uint32_t workspace[WORKSPACE / 4];
     uint32_t after[CANARIES];
-} memory_t;
+} memory;
+
+static struct {
+    uint32_t before[CANARIES];
+    labial_hear_t hear;
+    uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
+    uint32_t behind_hear[CANARIES];
+    labial_face_t face;
+    int32_t room[LABIAL_FACE_SIZE(SERVOS, AHEAD) / 4];
+    uint32_t behind_face[CANARIES];
+    labial_beside_t player;
+    uint8_t ring[LABIAL_BESIDE_SIZE(SERVOS, KEPT)];
+    uint32_t behind_player[CANARIES];
+} toy;
+
+static struct {
+    uint32_t before[CANARIES];
+    labial_voice_t voice;
+    uint32_t between[CANARIES];
+    uint32_t memory[LABIAL_VOICE_SIZE(3, 8, PLACES) / 4];
+    uint32_t after[CANARIES];
+} agent;
+
+/* Paints what lies beside the structures and their workspaces, or checks that nothing was written there. */
+static void guard(int check)
+{
+    static uint32_t *const places[] = { memory.before,   memory.between,  memory.after,      toy.before,
+                                        toy.behind_hear, toy.behind_face, toy.behind_player, agent.before,
+                                        agent.between,   agent.after };
+    for (unsigned i = 0; i < COUNT_OF(places) * CANARIES; i++) {
+        uint32_t *const word = &places[i / CANARIES][i % CANARIES];
+        if (check)
+            assert_int_equal(*word, (i + 1u) * 0x9e3779b1u);
+        *word = (i + 1u) * 0x9e3779b1u;
+    }
+}
 
 typedef struct {
-    memory_t memory;
     fixture_random_t random;
     labial_laugh_t laugh;
     unsigned phonemes; /* of speech that are still to be said before something else is chosen */
@@ -74,30 +113,14 @@ static void on_frame(void *user, uint32_t frame, const int16_t faps[LABIAL_CHANN
     d->day++;
 }
 
-static void paint(uint32_t *words, int check)
-{
-    for (uint32_t i = 0; i < CANARIES; i++) {
-        if (check)
-            assert_int_equal(words[i], (i + 1u) * 0x9e3779b1u);
-        words[i] = (i + 1u) * 0x9e3779b1u;
-    }
-}
-
-static void guard(int check)
-{
-    paint(day.memory.before, check);
-    paint(day.memory.between, check);
-    paint(day.memory.after, check);
-}
-
 static void begin_day(uint32_t first)
 {
     memset(&day, 0, sizeof day);
     guard(0);
-    assert_ok(labial_init(&day.memory.stream, &speech_en, day.memory.workspace, WORKSPACE, on_frame, &day));
-    assert_ok(labial_exact(&day.memory.stream, 1));
+    assert_ok(labial_init(&memory.stream, &speech_en, memory.workspace, WORKSPACE, on_frame, &day));
+    assert_ok(labial_exact(&memory.stream, 1));
     day.random.state = 20;
-    day.memory.stream.frame = day.next = first; /* no day is long enough to come there otherwise */
+    memory.stream.frame = day.next = first; /* no day is long enough to come there otherwise */
 }
 
 /* Frames that are pushed and not delivered: the rounded sum of the durations less what came. */
@@ -109,7 +132,7 @@ static uint64_t held(void)
 static int tick(void)
 {
     day.calls = 0;
-    const int result = labial_tick(&day.memory.stream);
+    const int result = labial_tick(&memory.stream);
     assert_in_range(result, LABIAL_OK, LABIAL_DONE);
     assert_int_equal(day.calls, result == LABIAL_OK);
     guard(1);
@@ -118,7 +141,7 @@ static int tick(void)
 
 static void push(unsigned phoneme, uint32_t ms)
 {
-    assert_ok(labial_push(&day.memory.stream, phoneme, ms));
+    assert_ok(labial_push(&memory.stream, phoneme, ms));
     day.ms += ms;
 }
 
@@ -136,7 +159,7 @@ static void feed(void)
     }
     if (day.phonemes == 0) {
         day.laughing = fixture_below(&day.random, 3) == 0;
-        assert_ok(labial_use(&day.memory.stream, models[day.laughing]));
+        assert_ok(labial_use(&memory.stream, models[day.laughing]));
         day.phonemes = day.laughing ? 0 : 1u + fixture_below(&day.random, 60);
         day.laughs += (unsigned)day.laughing;
         if (day.laughing)
@@ -159,7 +182,7 @@ static void feed(void)
 
 static void restart(void)
 {
-    assert_ok(labial_restart(&day.memory.stream));
+    assert_ok(labial_restart(&memory.stream));
     day.ms = day.frames = 0;
     day.phonemes = 0;
     day.laughing = 0;
@@ -168,8 +191,8 @@ static void restart(void)
 /* Plays what is held to its last frame. */
 static void end(void)
 {
-    uint64_t ticks = held() + labial_latency(&day.memory.stream).delay;
-    assert_ok(labial_end(&day.memory.stream));
+    uint64_t ticks = held() + labial_latency(&memory.stream).delay;
+    assert_ok(labial_end(&memory.stream));
     while (tick() != LABIAL_DONE)
         assert_true(ticks-- > 0);
     assert_true(held() == 0);
@@ -188,12 +211,12 @@ static void cancel(void)
 {
     uint32_t ms = fixture_below(&day.random, 600);
     uint64_t left = ease_frames(ms);
-    assert_ok(labial_cancel(&day.memory.stream, ms));
+    assert_ok(labial_cancel(&memory.stream, ms));
     if (fixture_below(&day.random, 3) == 0) {
         assert_ok(tick());
         ms = fixture_below(&day.random, 600);
         left = ease_frames(ms);
-        assert_ok(labial_cancel(&day.memory.stream, ms));
+        assert_ok(labial_cancel(&memory.stream, ms));
     }
     for (; left > 0; left--)
         assert_ok(tick());
@@ -206,13 +229,13 @@ static void cancel(void)
 static size_t speak(int16_t kept[SENTENCE][LABIAL_CHANNELS])
 {
     day.kept = kept;
-    assert_ok(labial_use(&day.memory.stream, &speech_en));
+    assert_ok(labial_use(&memory.stream, &speech_en));
     for (unsigned i = 0; i < 20; i++)
         push((i * 7u + 3u) % SPEECH_EN_PHONEMES, 60u + i % 5u * 20u);
-    assert_ok(labial_use(&day.memory.stream, &laughter_synthetic));
+    assert_ok(labial_use(&memory.stream, &laughter_synthetic));
     for (unsigned i = 0; i < 10; i++)
         push(i % LABIAL_LAUGH_PHONEMES, 110);
-    assert_ok(labial_end(&day.memory.stream));
+    assert_ok(labial_end(&memory.stream));
     while (tick() != LABIAL_DONE) {
     }
     const size_t frames = (size_t)day.frames;
@@ -243,12 +266,12 @@ TEST(a_day_is_exact_to_the_frame)
         } else if (chance < 8) {
             cancel();
         }
-        for (; burst > 0 && labial_room(&day.memory.stream) > 0; burst--)
+        for (; burst > 0 && labial_room(&memory.stream) > 0; burst--)
             feed();
         const int result = tick();
         assert_int_not_equal(result, LABIAL_DONE);
         day.starved += result == LABIAL_STARVED;
-        assert_true(labial_latency(&day.memory.stream).frames == held());
+        assert_true(labial_latency(&memory.stream).frames == held());
     }
     end();
     assert_int_equal(day.wraps, 1);
@@ -284,11 +307,8 @@ TEST(a_restart_at_the_wrap_does_not_jump)
 
 #define SOUND_RATE 8000u
 #define SAMPLES (SOUND_RATE / LABIAL_HEAR_FPS) /* of a frame */
-#define SERVOS 2
-#define AHEAD 5
-#define KEPT 64u    /* frames that the player's ring and the server remember */
-#define BUFFERED 32 /* frames that the server is ahead of what is heard */
-#define REPEATED 8u /* frames of a packet */
+#define BUFFERED 32                            /* frames that the server is ahead of what is heard */
+#define REPEATED 8u                            /* frames of a packet */
 
 static const labial_rig_output_t servos[SERVOS] = {
     { .weights = { [4] = -LABIAL_RIG_ONE },
@@ -308,19 +328,6 @@ static const labial_rig_output_t servos[SERVOS] = {
       .slew = 25 },
 };
 static const labial_rig_t rig = { servos, SERVOS };
-
-static struct {
-    uint32_t before[CANARIES];
-    labial_hear_t hear;
-    uint32_t workspace[HEAR_FIXTURE_WORKSPACE_SIZE / 4];
-    uint32_t behind_hear[CANARIES];
-    labial_face_t face;
-    int32_t room[LABIAL_FACE_SIZE(SERVOS, AHEAD) / 4];
-    uint32_t behind_face[CANARIES];
-    labial_beside_t player;
-    uint8_t ring[LABIAL_BESIDE_SIZE(SERVOS, KEPT)];
-    uint32_t behind_player[CANARIES];
-} toy;
 
 static struct {
     fixture_random_t random;
@@ -356,19 +363,11 @@ static void on_class(void *user, unsigned shown, uint32_t frame, uint32_t frames
     shift.told += frames;
 }
 
-static void guard_toy(int check)
-{
-    paint(toy.before, check);
-    paint(toy.behind_hear, check);
-    paint(toy.behind_face, check);
-    paint(toy.behind_player, check);
-}
-
 static void begin_shift(uint32_t first)
 {
     memset(&toy, 0, sizeof toy);
     memset(&shift, 0, sizeof shift);
-    guard_toy(0);
+    guard(0);
     shift.random.state = 36;
     assert_ok(labial_rig_check(&rig));
     assert_ok(labial_face_init(&toy.face, &rig, LABIAL_HEAR_FPS, AHEAD, toy.room, sizeof toy.room));
@@ -533,7 +532,7 @@ static void work(unsigned minutes, uint32_t now, uint32_t frame)
             compare_sentence(first, frames);
             begin_numbers((hours % 2u ? 0x80000000u : 0u) - HOUR / 2u);
         }
-        guard_toy(1);
+        guard(1);
     }
     compare_sentence(first, frames);
     assert_int_equal(shift.wraps, frame > 0x80000000u);
@@ -557,18 +556,9 @@ TEST(sound_stays_in_step_at_half_of_the_counters)
 
 /* ---- A voice that is followed ------------------------------------------------------------------------------------ */
 
-#define PLACES 400
 #define WORDS 24u   /* of an answer, at most */
 #define ANSWER 300u /* frames that are kept of one */
 #define PAUSE 40    /* FAP units that a pause is away from the neutral face, at most */
-
-static struct {
-    uint32_t before[CANARIES];
-    labial_voice_t voice;
-    uint32_t between[CANARIES];
-    uint32_t memory[LABIAL_VOICE_SIZE(3, 8, PLACES) / 4];
-    uint32_t after[CANARIES];
-} agent;
 
 static struct {
     fixture_random_t random;
@@ -585,13 +575,6 @@ static struct {
 
 static const char *const vocabulary[] = { "maybe", "people", "Bob",      "water", "five",
                                           "of",    "a",      "movement", "shoe",  "the" };
-
-static void guard_agent(int check)
-{
-    paint(agent.before, check);
-    paint(agent.between, check);
-    paint(agent.after, check);
-}
 
 /* Tells the words of an answer from one on, up to another. */
 static int tell_words(uint32_t identity, unsigned from, unsigned until)
@@ -628,7 +611,7 @@ static void follow(uint32_t milliseconds)
             memcpy(talk.kept[talk.frames++], faps, sizeof faps);
     }
     assert_int_equal(talk.due, talk.now * RATE / 1000u + 1u);
-    guard_agent(1);
+    guard(1);
 }
 
 /* An answer of words of these lengths, with the next frame. */
@@ -725,7 +708,7 @@ TEST(answers_go_on_for_hours)
     uint64_t begin;
     memset(&agent, 0, sizeof agent);
     memset(&talk, 0, sizeof talk);
-    guard_agent(0);
+    guard(0);
     talk.random.state = 34;
     assert_ok(labial_voice_init(&agent.voice, &speech_en, agent.memory, sizeof agent.memory));
     assert_ok(labial_voice_words(&agent.voice, &words_en, NULL));

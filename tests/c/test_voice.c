@@ -144,8 +144,11 @@ static void play(uint64_t until)
         assert_ok(labial_voice_next(&voice, heard, NULL, faps));
 }
 
-/* One step: "begin 1000 a" or "begin a", behind the one before, "play 600", "cancel 100", "finish", "done", "not done", or
- * the message "a: 0-500 M, 500-700 AA". Names may be left out. What should not be accepted is "dropped a: ..." or
+static void show_until(unsigned milliseconds);
+static void tell_sentence(unsigned from, unsigned to);
+
+/* One step: "begin 1000 a" or "begin a", behind the one before, "play 600", "show 600", "cancel 100", "finish", "done",
+ * "not done", "sentence", which is all of it, or the message "a: 0-500 M, 500-700 AA". Names may be left out. What should not be accepted is "dropped a: ..." or
  * "full a: ...". */
 static void take_step(const char *step)
 {
@@ -158,6 +161,10 @@ static void take_step(const char *step)
         assert_ok(labial_voice_begin(&voice, has_time ? time : LABIAL_VOICE_BEHIND, *who ? name(who) : 0));
     } else if (sscanf(step, "play %lu", &time) > 0) {
         play(time);
+    } else if (sscanf(step, "show %lu", &time) > 0) {
+        show_until((unsigned)time);
+    } else if (strcmp(step, "sentence") == 0) {
+        tell_sentence(0, 100);
     } else if (sscanf(step, "cancel %lu", &time) > 0) {
         assert_ok(labial_voice_cancel(&voice, (uint32_t)time));
     } else if (strcmp(step, "finish") == 0) {
@@ -1073,21 +1080,15 @@ TEST_AFTER(begin_frames, clocks_jump)
 
 TEST_AFTER(begin_frames, a_cancel_eases_to_rest)
 {
-    tell_sentence(0, SENTENCE);
-    show_until(900);
+    follow("sentence; show 900");
     assert_memory_equal(shown, wanted, 46 * sizeof *shown);
-    assert_ok(labial_voice_cancel(&voice, 90));
-    assert_int_equal(labial_voice_done(&voice), 0);
-    show_until(960);
+    follow("cancel 90; not done; show 960");
     assert_memory_not_equal(shown[48], rest, sizeof rest);
-    show_until(1000);
+    follow("show 1000; done; begin 1100");
     assert_memory_equal(shown[50], rest, sizeof rest);
-    assert_int_equal(labial_voice_done(&voice), 1);
-    assert_ok(labial_voice_begin(&voice, 1100, 0));
     assert_ok(labial_voice_phoneme(&voice, SPEECH_EN_SIL, 0, 200)); /* that is nothing */
-    show_until(1200);
+    follow("show 1200; sentence");
     assert_memory_equal(shown[60], rest, sizeof rest);
-    tell_sentence(0, SENTENCE);
     want(1100);
     show_until(2400);
     assert_memory_equal(shown[70], wanted[70], 51 * sizeof *shown);
@@ -1124,106 +1125,84 @@ TEST_AFTER(begin_frames, a_face_comes_to_rest_at_the_end_while_the_clock_stands)
 {
     static uint32_t before[COUNT_OF(memory)];
     int16_t faps[LABIAL_CHANNELS];
-    assert_ok(labial_voice_finish(&voice));
+    follow("finish");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* nothing was shown, */
-    show_until(20);
+    follow("show 20");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* or is known */
     voice.finished = 0;
     assert_ok(labial_voice_phoneme(&voice, SPEECH_EN_AA, 100, 1000));
-    show_until(780);
+    follow("show 780");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
-    assert_ok(labial_voice_finish(&voice));
+    follow("finish");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE); /* the player waits for sound */
-    show_until(900);
-    for (unsigned i = 0; i < 4; i++) { /* a clock of large steps */
+    follow("show 900");
+    for (unsigned i = 0; i < 4; i++) /* a clock of large steps */
         assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_WAITING);
-    }
-    show_until(940);
+    follow("show 940");
     for (unsigned i = 0; i < 19; i++) {
-        assert_int_equal(labial_voice_done(&voice), 0);
+        follow("not done");
         assert_int_equal(labial_voice_next(&voice, 940, NULL, faps), LABIAL_WAITING);
         assert_int_equal(labial_voice_ease(&voice, faps), i < 4 ? LABIAL_WAITING : LABIAL_OK);
     }
     assert_memory_equal(faps, rest, sizeof rest);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    follow("done");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
     memcpy(before, memory, sizeof memory);
     labial_voice_t twin = voice;
-    assert_ok(labial_voice_begin(&voice, 1400, 0)); /* the next answer waits for its sound */
-    assert_int_equal(labial_voice_done(&voice), 0);
-    tell_sentence(0, SENTENCE);
+    follow("begin 1400; not done; sentence"); /* the next answer waits for its sound */
     want(1400);
     show_until(2580);
     assert_memory_equal(shown[80], wanted[80], 50 * sizeof *shown);
     frame_count = 48;
     memcpy(memory, before, sizeof memory);
     voice = twin; /* or the clock goes on, */
-    show_until(1600);
+    follow("show 1600; done");
     assert_memory_equal(shown[80], rest, sizeof rest);
-    assert_int_equal(labial_voice_done(&voice), 1);
     frame_count = 48;
     memcpy(memory, before, sizeof memory);
     voice = twin; /* or more was told of what ended */
-    assert_ok(labial_voice_finish(&voice));
+    follow("finish");
     voice.utterances[0].identity = 7;
     labial_voice_item_t more = { 1000 * MS, 1500 * MS, NULL, 0, SPEECH_EN_IY };
     labial_voice_message_t late = { &more, 1, 7, 0, 0, LABIAL_VOICE_PHONEMES, LABIAL_VOICE_ABSOLUTE };
     assert_ok(labial_voice_tell(&voice, &late));
-    assert_int_equal(labial_voice_done(&voice), 0);
+    follow("not done");
     assert_int_equal(labial_voice_ease(&voice, faps), LABIAL_DONE);
-    show_until(1200);
+    follow("show 1200");
     assert_memory_not_equal(shown[60], rest, sizeof rest);
 }
 
 TEST_AFTER(begin_frames, an_end_right_after_a_cancel_waits_for_the_face)
 {
-    tell_sentence(0, SENTENCE);
-    show_until(900);
-    assert_ok(labial_voice_cancel(&voice, 200));
-    assert_ok(labial_voice_begin(&voice, 1500, 0));
-    assert_ok(labial_voice_finish(&voice));
-    assert_int_equal(labial_voice_done(&voice), 0);
-    show_until(1100);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    follow("sentence; show 900; cancel 200; begin 1500; finish; not done; show 1100; done");
     assert_memory_equal(shown[55], rest, sizeof rest);
 }
 
 TEST_AFTER(begin_frames, a_cancel_before_the_first_frame)
 {
-    assert_ok(labial_voice_cancel(&voice, 100));
-    show_until(200);
+    follow("cancel 100; show 200");
     assert_memory_equal(shown[0], rest, sizeof rest);
     assert_memory_equal(shown[10], rest, sizeof rest);
 }
 
 TEST_AFTER(begin_frames, done)
 {
-    assert_int_equal(labial_voice_done(&voice), 0);
-    assert_ok(labial_voice_finish(&voice));
-    assert_int_equal(labial_voice_done(&voice), 1); /* nothing was told */
-    tell_sentence(0, SENTENCE);
-    assert_int_equal(labial_voice_done(&voice), 0);
-    assert_ok(labial_voice_finish(&voice));
-    show_until(1760); /* the last one ends at 1300 */
-    assert_int_equal(labial_voice_done(&voice), 0);
-    show_until(1780);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    follow("not done; finish; done; sentence; not done");   /* at first nothing was told */
+    follow("finish; show 1760; not done; show 1780; done"); /* the last one ends at 1300 */
 }
 
 /* Pictures that were not drawn for seconds, as those of a hidden page: the face comes to rest before all is done. */
 TEST_AFTER(begin_frames, done_after_a_jump_is_at_rest)
 {
     int16_t faps[LABIAL_CHANNELS];
-    tell_sentence(0, SENTENCE);
-    assert_ok(labial_voice_finish(&voice));
-    show_until(500);
+    follow("sentence; finish; show 500");
     assert_ok(labial_voice_next(&voice, 5000, NULL, faps));
     assert_memory_not_equal(faps, rest, sizeof rest);
-    assert_int_equal(labial_voice_done(&voice), 0);
+    follow("not done");
     for (uint64_t heard = 5020; heard <= 5200; heard += 20)
         assert_ok(labial_voice_next(&voice, heard, NULL, faps));
     assert_memory_equal(faps, rest, sizeof rest);
-    assert_int_equal(labial_voice_done(&voice), 1);
+    follow("done");
 }
 
 TEST_AFTER(begin_frames, a_silence_of_hours)
