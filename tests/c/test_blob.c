@@ -20,6 +20,9 @@ SETUP(setup)
     fixture_rich(&computed);
     fixture_narrow(&computed, fixture_mirrored);
     models[2] = &computed.model;
+    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
+        rich.channels[c].contact_weight = (uint8_t)(0x21 + c);
+    slow.model.pair_knots = 1;
     models[3] = &slow.model;
     models[4] = &laugh.model;
     return 0;
@@ -39,7 +42,8 @@ static int load(labial_blob_t *blob, size_t size, void **copy)
     return labial_model_load(blob, *copy, size);
 }
 
-/* Would catch a table at the wrong place, a wrong pad, a scale that is not read. */
+/* Would catch a table at the wrong place, a wrong pad, a scale, a weight or a table of contact that is not read, and
+ * pairs of two knots taken for such of one. */
 TEST(a_blob_gives_the_same_frames)
 {
     for (unsigned m = 0; m < 5; m++) {
@@ -59,31 +63,6 @@ TEST(a_blob_gives_the_same_frames)
         fixture_close(&host);
         free(copy);
     }
-}
-
-/* Would catch a byte or a table of contact that is not read, and pairs of two knots taken for such of one. */
-TEST(contacts_and_knots_are_read)
-{
-    labial_blob_t blob;
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        rich.channels[c].contact_weight = (uint8_t)(0x21 + c);
-    assert_ok(labial_model_load(&blob, bytes, serialise(&rich.model)));
-    assert_int_equal(blob.model.pair_knots, 2);
-    assert_memory_equal(blob.model.pairs, rich.pairs, sizeof rich.pairs);
-    assert_int_equal(blob.model.floor_count, FIXTURE_FLOORS);
-    assert_memory_equal(blob.model.floors, rich.floors, sizeof rich.floors);
-    assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts);
-    for (unsigned c = 0; c < LABIAL_CHANNELS; c++)
-        assert_int_equal(blob.model.channels[c].contact_weight, 0x21 + c);
-    rich.model.pair_knots = 1;
-    assert_ok(labial_model_load(&blob, bytes, serialise(&rich.model)));
-    assert_int_equal(blob.model.pair_knots, 1);
-    assert_memory_equal(blob.model.contacts, rich.contacts, sizeof rich.contacts); /* which lies behind the pairs */
-    fixture_rich(&rich);
-    assert_ok(labial_model_load(&blob, bytes, serialise(&plain.model)));
-    assert_int_equal(blob.model.pair_knots, 1);
-    assert_null(blob.model.contacts);
-    assert_null(blob.model.pairs);
 }
 
 /* Would catch a size that is not compared with what the tables take: the model that was meant is another one. */

@@ -58,14 +58,12 @@ TEST(every_character_is_a_mark_or_none)
             (point >= 0x300 && point <= 0x36f && point != 0x327) || is_one_of(point, signs, COUNT_OF(signs));
         const int leads = is_mark || is_one_of(point, stress, COUNT_OF(stress));
         const size_t bytes = encode(point, text + 1);
-        if ((find(text, 1 + bytes) == B) != is_mark)
-            fail_msg("U+%04X behind a label", point);
-        if (find(text, bytes) == B) /* without its last byte */
-            fail_msg("half of U+%04X behind a label", point);
+        fixture_seed(point);
+        assert_int_equal(find(text, 1 + bytes) == B, is_mark);
+        assert_int_not_equal(find(text, bytes), B); /* without its last byte */
         encode(point, text);
         text[bytes] = 'B';
-        if ((find(text, bytes + 1) == B) != leads)
-            fail_msg("U+%04X before a label", point);
+        assert_int_equal(find(text, bytes + 1) == B, leads);
     }
 }
 
@@ -76,8 +74,8 @@ TEST(two_bytes_are_a_mark_where_they_are_a_character)
         for (unsigned b = 0; b < 0x100; b++) {
             const char behind[] = { 'B', (char)a, (char)b }, before[] = { (char)a, (char)b, 'B' };
             const int is_character = a >= 0xc2 && a < 0xe0 && b >= 0x80 && b < 0xc0;
-            if (!is_character && (find(behind, 3) == B || find(before, 3) == B))
-                fail_msg("bytes %02x %02x", a, b);
+            fixture_seed(a << 8 | b);
+            assert_true(is_character || (find(behind, 3) != B && find(before, 3) != B));
         }
 }
 
@@ -93,20 +91,14 @@ TEST(every_sign_is_a_mark_or_none)
         const int is_behind = c != 0 && strchr(":=~;.^\"-", one) != NULL, is_before = c != 0 && strchr("'\",%?", one);
         const int is_suffix = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
                               (c != 0 && strchr("=~^", one) != NULL);
-        if ((find(behind, 2) == B) != (is_blank || is_behind))
-            fail_msg("%u behind a label", c);
-        if ((find(before, 2) == B) != (is_blank || is_before))
-            fail_msg("%u before a label", c);
-        if ((find(apart, 3) == B) != is_blank)
-            fail_msg("%u behind a blank", c);
-        if ((find(stressed, 3) == AA) != (is_blank || is_behind || (c >= '0' && c <= '2')))
-            fail_msg("%u behind two letters", c);
-        if ((find(suffix, 3) == B) != is_suffix)
-            fail_msg("_ and %u behind a label", c);
-        if (find(distant, 4) == B)
-            fail_msg("_ and %u behind a blank", c);
-        if ((find(third, 4) == AA) != is_suffix)
-            fail_msg("_ and %u behind two letters", c);
+        fixture_seed(c);
+        assert_int_equal(find(behind, 2) == B, is_blank || is_behind);
+        assert_int_equal(find(before, 2) == B, is_blank || is_before);
+        assert_int_equal(find(apart, 3) == B, is_blank);
+        assert_int_equal(find(stressed, 3) == AA, is_blank || is_behind || (c >= '0' && c <= '2'));
+        assert_int_equal(find(suffix, 3) == B, is_suffix);
+        assert_int_not_equal(find(distant, 4), B);
+        assert_int_equal(find(third, 4) == AA, is_suffix);
     }
 }
 
@@ -118,10 +110,10 @@ TEST(every_backslash_sequence_is_a_mark_or_none)
             const char behind[] = { 'B', '\\', (char)a, (char)b }, before[] = { '\\', (char)a, (char)b, 'B' };
             const int is_mark = (strchr("|0OT-+:~NUDn3cv'`^", (int)a) && strchr("v^()", (int)b)) ||
                                 ((a == ':' || a == '.') && b == 'f') || (a == '\'' && (b == '1' || b == '2'));
-            if ((find(behind, 4) == B) != is_mark || (find(before, 4) == B) != is_mark)
-                fail_msg("\\%c%c", (int)a, (int)b);
-            if (find(behind, 3) == B)
-                fail_msg("\\%c alone", (int)a);
+            fixture_seed(a << 8 | b);
+            assert_int_equal(find(behind, 4) == B, is_mark);
+            assert_int_equal(find(before, 4) == B, is_mark);
+            assert_int_not_equal(find(behind, 3), B);
         }
 }
 

@@ -310,23 +310,12 @@ TEST(a_restart_at_the_wrap_does_not_jump)
 #define BUFFERED 32                            /* frames that the server is ahead of what is heard */
 #define REPEATED 8u                            /* frames of a packet */
 
-static const labial_rig_output_t servos[SERVOS] = {
-    { .weights = { [4] = -LABIAL_RIG_ONE },
-      .contact = 1,
-      .gain = LABIAL_RIG_GAIN(1, 1),
-      .neutral = 1400,
-      .minimum = 1400,
-      .maximum = 1900,
-      .slew = 60,
-      .closed = 1400,
-      .acceleration = 20 },
-    { .weights = { [5] = LABIAL_RIG_ONE },
-      .gain = LABIAL_RIG_GAIN(2, 1),
-      .neutral = 90,
-      .minimum = 20,
-      .maximum = 160,
-      .slew = 25 },
-};
+static labial_rig_output_t servos[SERVOS] = { [1] = { .weights = { [5] = LABIAL_RIG_ONE },
+                                                      .gain = LABIAL_RIG_GAIN(2, 1),
+                                                      .neutral = 90,
+                                                      .minimum = 20,
+                                                      .maximum = 160,
+                                                      .slew = 25 } };
 static const labial_rig_t rig = { servos, SERVOS };
 
 static struct {
@@ -369,6 +358,7 @@ static void begin_shift(uint32_t first)
     memset(&shift, 0, sizeof shift);
     guard(0);
     shift.random.state = 36;
+    servos[0] = fixture_jaw(1900, 60, 20);
     assert_ok(labial_rig_check(&rig));
     assert_ok(labial_face_init(&toy.face, &rig, LABIAL_HEAR_FPS, AHEAD, toy.room, sizeof toy.room));
     assert_ok(labial_hear_init(&toy.hear, &hear_fixture, SOUND_RATE, 1, toy.workspace, sizeof toy.workspace, on_heard,

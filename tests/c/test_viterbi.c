@@ -1,13 +1,12 @@
 /*
- * test_viterbi.c - the search for the likeliest state path, against exhaustive search and against the dense programme of
- * oracle_steps.c. Costs are those of labial/model.h.
+ * test_viterbi.c - the search for the likeliest state path, against the dense programme of oracle_steps.c. Costs are those
+ * of labial/model.h.
  */
 #include "suite.h"
 #include "oracle.h"
 #include "viterbi.h"
 
 #define STEPS 120
-#define EXHAUSTED 5 /* steps of which all paths are tried */
 
 static labial_model_t model;
 static labial_emission_t emissions[LABIAL_STATES_MAX];
@@ -62,35 +61,6 @@ static unsigned width(void)
     return model.state_count < LABIAL_SEARCHED ? model.state_count : LABIAL_SEARCHED;
 }
 
-/* Least cost of all paths into each state of the last of `count` steps, each of them tried. */
-static void exhaust(unsigned count, double *least)
-{
-    unsigned place[EXHAUSTED] = { 0 }, first[EXHAUSTED], t, i;
-    for (t = 0; t < count; t++)
-        first[t] = oracle_window(&model, &channel, position[t]);
-    for (i = 0; i < LABIAL_STATES_MAX; i++)
-        least[i] = ORACLE_NONE;
-    for (;;) {
-        double cost = initials[first[0] + place[0]];
-        for (t = 0; t < count; t++) {
-            const unsigned to = first[t] + place[t];
-            unsigned way = 255; /* every state can be leapt into */
-            for (i = 0; t > 0 && i < 4u * model.predecessor_fours; i++) {
-                const labial_transition_t *const transition = &transitions[to * 4u * model.predecessor_fours + i];
-                if (transition->predecessor == first[t - 1] + place[t - 1] && transition->cost < way)
-                    way = transition->cost;
-            }
-            cost += (t > 0 ? way : 0) + oracle_emission(&emissions[to], position[t]);
-        }
-        t = first[count - 1] + place[count - 1];
-        least[t] = cost < least[t] ? cost : least[t];
-        for (t = 0; t < count && ++place[t] == width(); t++)
-            place[t] = 0;
-        if (t == count)
-            return;
-    }
-}
-
 /* Takes step t with the library and the oracle; the latter's path begins with step `begin`. */
 static void take_step(labial_search_t *search, unsigned t, unsigned begin, unsigned span, int ends_unit)
 {
@@ -103,7 +73,7 @@ static void take_step(labial_search_t *search, unsigned t, unsigned begin, unsig
 }
 
 /* The library's scores must be these costs, less the least of them; where a unit ends the best state alone has one. */
-static void check_scores(const labial_search_t *search, const double *cost, int ends_unit, const char *what)
+static void check_scores(const labial_search_t *search, const double *cost, int ends_unit)
 {
     double least = ORACLE_NONE;
     for (unsigned q = 0; q < model.state_count; q++)
@@ -111,30 +81,7 @@ static void check_scores(const labial_search_t *search, const double *cost, int 
     assert_int_equal(search->count, ends_unit ? 1 : width());
     for (unsigned i = 0; i < search->count; i++) {
         const double above = cost[search->first + i] - least;
-        if ((double)search->scores[i] != (above < 255.0 ? above : 255.0))
-            fail_msg("%s: state %u has a score of %u, not %g", what, search->first + i, search->scores[i], above);
-    }
-}
-
-/* Would catch a transition taken the other way round or into a wrong state, a leap from any but the best state or at
- * another cost, a score cut off too early, an initial cost that is forgotten. */
-TEST(scores_are_those_of_exhaustive_search)
-{
-    fixture_random_t random = { 11 };
-    for (unsigned round = 0; round < FIXTURE_ROUNDS(1500); round++) {
-        const unsigned many = round % 20 == 0, count = 1 + round % (many ? 3u : (unsigned)EXHAUSTED);
-        double least[LABIAL_STATES_MAX];
-        labial_search_t search;
-        make(&random, many ? 10 + fixture_below(&random, 54) : 1 + round % 4, 40 + fixture_below(&random, 200),
-             300 + round % 400 * 10, round % 7 ? 3000 : 300);
-        memset(&search, 0xa5, sizeof search);
-        for (unsigned t = 0; t < count; t++)
-            take_step(&search, t, 0, 1, 0);
-        exhaust(count, least);
-        check_scores(&search, least, 0, "exhaustive");
-        assert_true(least[search.path[0]] == least[steps[count - 1].best]); /* the oracle agrees */
-        for (unsigned t = search.first; t < search.path[0]; t++)
-            assert_true(least[t] > least[search.path[0]]); /* the lowest of the best */
+        assert_near(search->scores[i], above < 255.0 ? above : 255.0, 0);
     }
 }
 
@@ -161,7 +108,9 @@ static unsigned check_path(const labial_search_t *search, unsigned last, unsigne
     return changed;
 }
 
-/* Long runs over all sizes of models, with units and solutions that end at random: would catch a back-pointer or a window
+/* Long runs over all sizes of models, with units and solutions that end at random: would catch a transition taken the other
+ * way round or into a wrong state, a leap from any but the best state or at another cost, a score cut off too early, an
+ * initial cost that is forgotten, a back-pointer or a window
  * of the wrong step, a unit's end that loses the path or lets another state live, steps of several frames taken for
  * single ones, a path that forgets what was decided in the solution before. */
 TEST(paths_are_those_of_the_dense_programme)
@@ -177,7 +126,7 @@ TEST(paths_are_those_of_the_dense_programme)
         for (unsigned t = 0; t < STEPS; t++) {
             spans[t] = 1 + fixture_below(&random, LABIAL_SEARCH_STRIDE_MAX);
             take_step(&search, t, begin, spans[t], fixture_below(&random, 10) == 0);
-            check_scores(&search, steps[t].cost, steps[t].ends_unit, "dense");
+            check_scores(&search, steps[t].cost, steps[t].ends_unit);
             assert_int_equal(search.first, steps[t].ends_unit ? steps[t].best : steps[t].first);
             leaps += t > begin && steps[t].from[steps[t].best] == steps[t - 1].best &&
                      steps[t].cost[steps[t].best] - steps[t - 1].cost[steps[t - 1].best] >= 255.0;

@@ -296,12 +296,6 @@ TEST(misuse_is_an_error)
     assert_int_equal(labial_words_read_next(&words_en, NULL, NULL, "a", 1, &word), LABIAL_ERROR_NULL);
     other.format++;
     assert_int_equal(labial_words_read(&other, NULL, "a", 1, &word), LABIAL_ERROR_VERSION);
-}
-
-TEST(phonemes_have_labels)
-{
-    assert_string_equal(labial_words_label(&words_en, 0), "SIL");
-    assert_string_equal(labial_words_label(&words_en, 1), "AA");
     assert_string_equal(labial_words_label(&words_en, 39), "ZH");
     assert_string_equal(labial_words_label(&words_en, 40), "");
     assert_string_equal(labial_words_label(NULL, 0), "");
