@@ -118,8 +118,7 @@ TEST_AFTER(begin, other_packets_are_refused)
 TEST(null_pointers_and_wrong_sizes_are_refused)
 {
     uint8_t values[OUTPUTS];
-    uint8_t *const large = (uint8_t *)malloc(LABIAL_BESIDE_SIZE(1, 70000));
-    assert_non_null(large);
+    uint8_t *const large = (uint8_t *)fixture_room(LABIAL_BESIDE_SIZE(1, 70000), 1);
     memset(&player, 0, sizeof player);
     for (unsigned i = 0; i < 2; i++) {
         labial_beside_t *const bad = i ? &player : NULL;
@@ -246,14 +245,8 @@ TEST(a_cancel_reaches_across_the_end_of_numbers)
  * differ in one of their bytes; frames of the one before; and a face that jumps when it begins. */
 TEST(a_session_begins_whatever_its_numbers)
 {
-    static const uint64_t heard[] = { 0,
-                                      40,
-                                      1000000,
-                                      UINT64_C(0x7fffffff),
-                                      UINT64_C(0x80000000),
-                                      UINT64_C(2419200000),
-                                      UINT64_C(0xffffffff),
-                                      UINT64_C(0x1234567890) };
+    static const uint64_t heard[] = { 0,          40,         1000000,    0x7fffffff,
+                                      0x80000000, 2419200000, 0xffffffff, UINT64_C(0x1234567890) };
     static const uint16_t other[] = { 0x1281, 0x1380, 0 };
     for (unsigned i = 0; i < 64 * 3; i++) {
         const uint64_t from = heard[i % 8] / STEP, to = heard[i / 8 % 8] / STEP;

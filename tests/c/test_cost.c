@@ -140,13 +140,12 @@ static void begin(const labial_model_t *model)
     assert_ok(labial_init(&place.stream, model, place.workspace, sizeof place.workspace, ignore, NULL));
 }
 
-/* Fills the queue with phonemes of three frames and more; ends the stream once `left` is 0. */
-static void feed(unsigned phonemes, unsigned *left)
+/* Fills the queue with phonemes that last `ms`, or three frames and more by turns where that is 0; ends the stream once
+ * `left` is 0. */
+static void feed(unsigned phonemes, unsigned ms, unsigned *left)
 {
-    while (*left > 0 && labial_room(&place.stream) > 0) {
-        assert_ok(labial_push(&place.stream, *left * 7u % phonemes, 60u + *left % 5u * 20u));
-        --*left;
-    }
+    for (; *left > 0 && labial_room(&place.stream) > 0; --*left)
+        assert_ok(labial_push(&place.stream, *left * 7u % phonemes, ms ? ms : 60u + *left % 5u * 20u));
     if (*left == 0)
         assert_ok(labial_end(&place.stream));
 }
@@ -159,7 +158,7 @@ static void channels_take_turns(const labial_model_t *model)
     unsigned left = 60, moved = 0, turns = 0;
     begin(model);
     for (unsigned tick = 0;; tick++) {
-        feed(model->phoneme_count, &left);
+        feed(model->phoneme_count, 0, &left);
         memcpy(before, place.stream.channels.progress, sizeof before);
         if (labial_tick(&place.stream) == LABIAL_DONE)
             break;
@@ -186,16 +185,12 @@ typedef struct {
     unsigned tick, halves, begun; /* `begun`: a phoneme, with the shape that was selected */
 } work_t;
 
-/* The work of the next tick of a stream of phonemes that last `ms`, or three frames and more by turns where that is 0;
- * false at the end. */
+/* The work of the next tick of a stream; false at the end. */
 static int next_work(unsigned ms, unsigned *left, work_t *work)
 {
     const uint8_t was = place.stream.next.halves;
     const labial_shape_t *const spoken = place.stream.shape;
-    for (; *left > 0 && labial_room(&place.stream) > 0; --*left)
-        assert_ok(labial_push(&place.stream, *left * 7u % SPEECH_EN_PHONEMES, ms ? ms : 60u + *left % 5u * 20u));
-    if (*left == 0)
-        assert_ok(labial_end(&place.stream));
+    feed(SPEECH_EN_PHONEMES, ms, left);
     if (labial_tick(&place.stream) == LABIAL_DONE)
         return 0;
     work->begun = place.stream.shape != spoken;

@@ -79,7 +79,6 @@ TEST(sounds_move_it)
     assert_int_equal(labial_face_visemes(&face, NULL, shares), LABIAL_ERROR_NULL);
 }
 
-/* Outputs with limits see as far as labial_rig_apply_ahead() with the same frames. */
 TEST(look_ahead_is_that_of_the_rig)
 {
     draw_from(7);

@@ -135,7 +135,6 @@ static unsigned sum_of(const uint8_t *shares)
 
 /* ---- Frames -------------------------------------------------------------------------------------------------------- */
 
-/* Would catch any step that is not what the exporter computes and judges a model by, at any rate. */
 TEST(frames_and_classes_are_the_exporters)
 {
     for (unsigned i = 0; i < HEARS; i++) {
@@ -197,7 +196,6 @@ TEST(sounds_are_those_of_the_classes_that_lead)
     assert_int_equal(labial_hear_visemes(&hear, visemes, NULL), LABIAL_ERROR_NULL);
 }
 
-/* Would catch a sample that is lost or heard twice at the border of blocks. */
 TEST(blocks_of_any_length_give_the_same_frames)
 {
     static const uint32_t blocks[] = { 1, 2, 7, 159, 160, 161, 320, 1024, 4801 };
@@ -209,7 +207,6 @@ TEST(blocks_of_any_length_give_the_same_frames)
         }
 }
 
-/* Would catch a latency that is not what a program must wait for. */
 TEST(a_frame_is_known_when_latency_says)
 {
     for (unsigned i = 0; i < COUNT_OF(rates); i++) {
@@ -642,7 +639,6 @@ static void call_again(void)
     refused += labial_hear_articulation(&hear, 50) == LABIAL_ERROR_STATE && labial_hear_latency(&hear).delay == 5;
 }
 
-/* Would catch a callback that changes the stream under a call. */
 TEST(callbacks_cannot_change_their_stream)
 {
     refused = 0;

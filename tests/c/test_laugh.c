@@ -81,7 +81,6 @@ TEST(laughs_are_those_of_the_reference)
     }
 }
 
-/* Would catch an intensity that is not cut off at the highest. */
 TEST(more_than_the_highest_intensity_is_the_highest)
 {
     const sum_t most = sum_of(9000, LABIAL_LAUGH_FULL, 3), more = sum_of(9000, LABIAL_LAUGH_FULL + 1u, 3),

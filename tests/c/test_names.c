@@ -36,27 +36,19 @@ static labial_names_t names = { 0, COUNT_OF(labels), NULL, labels };
 /* Packs the first `count` names at the very end of a heap block. */
 static uint8_t *pack(labial_names_t *packed, unsigned count)
 {
-    uint8_t *bytes = NULL;
-    size_t size = 0;
-    for (unsigned pass = 0; pass < 2; pass++) {
-        size_t at = 0;
-        for (unsigned i = 0; i < count; i++) {
-            const size_t length = strlen(entries[i].name);
-            if (pass > 0) {
-                bytes[at] = entries[i].phoneme;
-                bytes[at + 1] = (uint8_t)(length | entries[i].sets);
-                memcpy(bytes + at + 2, entries[i].name, length);
-            }
-            at += 2 + length;
-        }
-        size = at;
-        if (pass == 0)
-            bytes = (uint8_t *)malloc(size);
-        assert_non_null(bytes);
+    uint8_t bytes[300];
+    size_t at = 0;
+    for (unsigned i = 0; i < count; i++) {
+        const size_t length = strlen(entries[i].name);
+        bytes[at] = entries[i].phoneme;
+        bytes[at + 1] = (uint8_t)(length | entries[i].sets);
+        memcpy(bytes + at + 2, entries[i].name, length);
+        at += 2 + length;
     }
-    packed->entries = bytes;
-    packed->size = (uint16_t)size;
-    return bytes;
+    uint8_t *const copy = (uint8_t *)fixture_copy(bytes, at);
+    packed->entries = copy;
+    packed->size = (uint16_t)at;
+    return copy;
 }
 
 SETUP(set_up)

@@ -55,15 +55,11 @@ TEST(two_streams_do_not_disturb_each_other)
 {
     static fixture_phoneme_t other[COUNT];
     fixture_host_t alone[2], together[2];
-    const labial_model_t *models[2];
-    const fixture_phoneme_t *inputs[2];
+    const labial_model_t *const models[] = { &rich.model, &slow.model };
+    const fixture_phoneme_t *const inputs[] = { input, other };
     size_t next[2] = { 0, 0 };
     int done[2] = { 0, 0 };
     unsigned rounds = 0;
-    models[0] = &rich.model;
-    models[1] = &slow.model;
-    inputs[0] = input;
-    inputs[1] = other;
     fixture_stream(input, COUNT, FIXTURE_RANDOM, 11);
     fixture_stream(other, COUNT, FIXTURE_PAUSES, 12);
     for (unsigned i = 0; i < 2; i++) {

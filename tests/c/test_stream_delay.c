@@ -98,19 +98,13 @@ TEST(changes_of_model_delay_nothing)
 #endif
 }
 
-/* The delay is that of the window, the lag and the stride and nothing else; the program is told. */
-TEST(the_delay_is_the_sum_of_its_parts)
-{
-    assert_int_equal(LABIAL_DELAY(1), LABIAL_WINDOW + LABIAL_LAG + 1);
-    assert_int_equal(LABIAL_DELAY(LABIAL_SEARCH_STRIDE_MAX), LABIAL_WINDOW + LABIAL_LAG + LABIAL_SEARCH_STRIDE_MAX);
-}
-
 /* An hour of silence holds up neither what comes before it nor what comes after. */
 TEST(an_hour_of_silence_is_played_as_it_comes)
 {
     const labial_model_t *const model = &rich.model;
     const size_t hour = LABIAL_DURATION_MAX / 1000 * FIXTURE_RATE;
     fixture_host_t host;
+    assert_int_equal(LABIAL_DELAY(FIXTURE_STRIDE), LABIAL_WINDOW + LABIAL_LAG + FIXTURE_STRIDE);
     assert_ok(fixture_open(&host, &model, 1));
     assert_ok(labial_push(host.stream, FIXTURE_A, 100)); /* 5 frames */
     assert_ok(labial_push(host.stream, FIXTURE_SIL, LABIAL_DURATION_MAX));

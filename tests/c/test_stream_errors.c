@@ -118,8 +118,7 @@ static void check_refuses(labial_t *stream, int result)
 TEST(nothing_works_before_init)
 {
     static const int fills[] = { 0x00, 0xff, 0x01, 0xa5, 0x7f };
-    labial_t *stream = (labial_t *)malloc(sizeof *stream);
-    assert_non_null(stream);
+    labial_t *stream = (labial_t *)fixture_room(1, sizeof *stream);
     for (unsigned i = 0; i < COUNT_OF(fills); i++) {
         memset(stream, fills[i], sizeof *stream);
         check_refuses(stream, LABIAL_ERROR_STATE);
@@ -142,11 +141,10 @@ TEST(null_streams_are_refused)
 TEST(a_failed_init_makes_the_stream_unusable)
 {
     const uint32_t size = labial_workspace_size(&plain.model);
-    uint32_t *workspace = (uint32_t *)malloc(size + 4u); /* room enough for the misaligned ones */
-    labial_t *stream = (labial_t *)malloc(sizeof *stream);
+    uint32_t *workspace = (uint32_t *)fixture_room(size + 4u, 1); /* room enough for the misaligned ones */
+    labial_t *stream = (labial_t *)fixture_room(1, sizeof *stream);
     uint8_t *bytes = (uint8_t *)workspace;
     fixture_recorder_t recorder = { 0 };
-    assert_true(workspace && stream);
     const struct {
         const labial_model_t *model;
         void *workspace;

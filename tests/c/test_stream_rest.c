@@ -151,7 +151,6 @@ TEST(a_stream_begins_and_ends_at_rest)
     assert_true(opened >= FIXTURE_ROUNDS(10));
 }
 
-/* Nothing follows what never moved. */
 TEST(a_face_that_stays_at_rest_is_done)
 {
     fixture_stream(input, 9, FIXTURE_VOWELS, 4);

@@ -227,7 +227,6 @@ TEST(articulated_streams_are_the_sum_of_their_steps)
     }
 }
 
-/* Would catch an articulation of one model alone. */
 TEST(two_articulated_models_are_the_sum_of_their_steps)
 {
     fixture_random_t random = { 43 };

@@ -19,12 +19,9 @@ static void add_phoneme(found_t *found, const char *label, uint64_t end)
 {
     const size_t room = sizeof found->text - found->length;
     const unsigned long milliseconds = (unsigned long)((end + 500000u) / 1000000u - (found->end + 500000u) / 1000000u);
-    int written;
-    if (found->in_milliseconds)
-        written = snprintf(found->text + found->length, room, "%lu", milliseconds);
-    else
-        written =
-            snprintf(found->text + found->length, room, "%s%s:%lu", found->length ? " " : "", label, milliseconds);
+    const int written = found->in_milliseconds ? snprintf(found->text + found->length, room, "%lu", milliseconds)
+                                               : snprintf(found->text + found->length, room, "%s%s:%lu",
+                                                          found->length ? " " : "", label, milliseconds);
     if (written < 0 || (size_t)written >= room)
         abort();
     found->length += (size_t)written;

@@ -173,7 +173,6 @@ TEST(random_streams_are_taken_frame_by_frame)
     assert_true((open > 1000 && rested > 1000) || LABIAL_REACH < 4);
 }
 
-/* Which models are held: would catch a slot that is free too early or never. */
 TEST(the_queue_knows_its_models)
 {
     labial_taken_t taken;

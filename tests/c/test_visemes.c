@@ -185,7 +185,6 @@ TEST_AFTER(begin, another_model_is_silence)
     assert_int_equal(shares[LABIAL_VISEME_SIL], LABIAL_VISEME_ONE);
 }
 
-/* A model that was changed under way: phonemes that it no longer has say nothing. */
 TEST_AFTER(begin, phonemes_beyond_the_model_say_nothing)
 {
     labial_exact(&stream, 1);

@@ -247,7 +247,6 @@ TEST(ends_that_are_not_known_are_guessed)
     assert_int_equal(until_now(), 0xffffffffu);
 }
 
-/* Would catch words that vanish since their service tells no more than where they begin. */
 TEST(words_of_no_length_have_no_known_end)
 {
     static const uint32_t ends[5] = { 500, 500, 500, 500, 500 };
