@@ -413,9 +413,9 @@ TEST(unchecked_tables_stay_defined)
 #define FAULTY(change)                                                                                                 \
     do {                                                                                                               \
         labial_rig_output_t outputs[2] = { good, good }, *const bad = &outputs[1];                                     \
-        const labial_rig_t rig = { outputs, 2 };                                                                       \
+        const labial_rig_t both = { outputs, 2 };                                                                      \
         change;                                                                                                        \
-        assert_int_equal(labial_rig_check(&rig), LABIAL_ERROR_RIG);                                                    \
+        assert_int_equal(labial_rig_check(&both), LABIAL_ERROR_RIG);                                                   \
     } while (0)
 
 TEST(check_names_every_fault)
@@ -427,6 +427,8 @@ TEST(check_names_every_fault)
                                                  { 1, { { 0, 0, LABIAL_RIG_SLOPE_MAX + 1 } } },
                                                  { 2, { { 5, 0, 1 }, { 5, 0, 1 } } } };
     const labial_rig_output_t good = plain();
+    const labial_rig_t rig = { &good, 1 };
+    assert_ok(labial_rig_check(&rig));
     FAULTY(bad->gain = LABIAL_RIG_GAIN_MAX + 1);
     FAULTY(bad->gain = INT32_MIN);
     FAULTY(bad->neutral = LABIAL_RIG_VALUE_MAX + 1);
