@@ -74,6 +74,13 @@ TEST(tones_beyond_8_kHz_vanish)
                 assert_true(deviation(convert_tone(rates[i].rate, tones[t], rates[i].rate / 10u), 0, 0) < 7071 * 0.01);
 }
 
+/* Would catch images of a sound of 8 kHz, which would sound like s: what differs from a tone of 1.5 kHz in any way. */
+TEST(no_image_remains_above_the_sound)
+{
+    assert_true(deviation(convert_tone(8000, 1500, 800), 1500, 10000) < 7071 * 0.005);
+    assert_true(deviation(convert_tone(12000, 1500, 1200), 1500, 10000) < 7071 * 0.005);
+}
+
 /* Would catch a sample that is converted too early, too late or twice: as many as fit before `reach` samples ago. */
 TEST(samples_come_when_their_time_is_known)
 {
