@@ -30,17 +30,18 @@ _MARKS = ((0x300, 0x36F), (0xAD, 0xAD), (0x200B, 0x200D), (0xFE00, 0xFE0F), (0xF
 _PLAIN = ("AAAAAAACEEEEIIIIDNOOOOO OUUUUYTsaaaaaaaceeeeiiiidnooooo ouuuuyty"
           "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUu"
           "UuUuUuWwYyYZzZzZzs")
-_LIGATURES = {"Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl",
-              "ﬅ": "st", "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F"}
+_SIGNS.update({
+    "Æ": "AE", "æ": "ae", "Œ": "OE", "œ": "oe", "ﬀ": "ff", "ﬁ": "fi", "ﬂ": "fl", "ﬃ": "ffi", "ﬄ": "ffl", "ﬅ": "st",
+    "ﬆ": "st", "℃": DEGREE + "C", "℉": DEGREE + "F",
+    # Fractions have blanks around them.
+    **{sign: f" {number[0]}/{number[1]} " for sign, number in zip(
+        "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())}})
 #: What HTML and SSML write for a character.
 _ENTITY = re.compile("&(amp|lt|gt|quot|apos|rsquo|nbsp|mdash|ldquo|rdquo|hellip|#39);")
 _ENTITIES = {"amp": "&", "quot": '"', "apos": "'", "rsquo": "'", "#39": "'", "nbsp": BLANK}
-#: Fractions, which have blanks around them.
-_LIGATURES.update({sign: f" {number[0]}/{number[1]} " for sign, number in zip(
-    "¼½¾⅓⅔⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "14 12 34 13 23 15 25 35 45 16 56 18 38 58 78".split())})
 #: The accents that tell a sound, as combining marks: grave, acute, circumflex, tilde, diaeresis, cedilla; and those of
 #: U+00C0 to U+00DF, as of the small letters 32 behind.
-_ACCENTS = {0x300: "`", 0x301: "'", 0x302: "^", 0x303: "~", 0x308: ":", 0x327: ","}
+_ACCENTS = dict(zip("\u0300\u0301\u0302\u0303\u0308\u0327", "`'^~:,"))
 _ACCENTED = "`'^~:  ,`'^:`'^: ~`'^~:  `'^:'  "
 #: What accented letters sound like; ë like EH, and at the end of a word like IY.
 _SOUNDS: Dict[str, str] = {"a`": "AA", "a'": "AA", "a^": "AA", "c,": "S", "e`": "EH", "e'": "EY", "e^": "EH",
@@ -63,7 +64,9 @@ def simple_characters(text: str) -> List[Simple]:
     while place < len(text):
         entity = _ENTITY.match(text, place)
         simple = _ENTITIES.get(entity[1], NOTHING) if entity else simplified(text[place])
-        accent = _accent(text[place]) or _ACCENTS.get(ord(text[place + 1]) if place + 1 < len(text) else 0, " ")
+        code = ord(text[place])
+        accent = _ACCENTED[code - 0xC0 & 31].strip() if 0xC0 <= code < 0x100 else ""
+        accent = accent or _ACCENTS.get(text[place + 1 : place + 2], " ")
         for plain in simple:
             sound = _SOUNDS.get(plain.lower() + accent) if simple[0].isalpha() else None
             found.append(Simple(plain, place, tuple(sound.split()) if sound else None))
@@ -80,18 +83,13 @@ def simplified(character: str) -> str:
         return BLANK
     if 0xFF01 <= code <= 0xFF5E:
         return simplified(chr(code - 0xFEE0))
-    if character in _SIGNS or character in _LIGATURES:
-        return _SIGNS.get(character) or _LIGATURES[character]
+    if character in _SIGNS:
+        return _SIGNS[character]
     if code < 0x80:
         return character if 0x20 < code < 0x7F else NOTHING
     if 0xC0 <= code < 0x180:
         return _PLAIN[code - 0xC0].replace(" ", NOTHING)
     return FOREIGN if any(low <= code <= high for low, high in _FOREIGN) else NOTHING
-
-
-def _accent(character: str) -> str:
-    code = ord(character)
-    return _ACCENTED[code - 0xC0 & 31].strip() if 0xC0 <= code < 0x100 else ""
 
 
 def is_inside(character: str) -> bool:

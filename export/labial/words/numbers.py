@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import List, Optional, Tuple
+from typing import Callable, List, Optional, Tuple
 
 from labial.words import characters as signs
 from labial.words.said import Said, inflected
@@ -54,9 +54,8 @@ def is_sum(said: Said, place: int) -> bool:
     return said.at(place) in _SIGNS and said.at(place + 1 + (said.at(place + 1) == ".")).isdigit()
 
 
-def currency_of(sign: str) -> int:
-    """The number of a sign of money, or -1."""
-    return _SIGNS.find(sign)
+#: The number of a sign of money, or -1.
+currency_of = _SIGNS.find
 
 
 def read_sum(said: Said, place: int) -> int:
@@ -78,20 +77,20 @@ def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, 
     Returns the place behind it, and whether the upper end of a range stands there without a sign of its own, as 10 does
     in "$5-10".
     """
-    currency, name = said.context.currency, CURRENCIES[said.context.currency]
+    context, name = said.context, CURRENCIES[said.context.currency]
+    hundredths = _HUNDREDTHS[context.currency]
     whole = _WHOLE.match(said.simple, place)
     digits = whole[0].replace(",", "") if whole else ""
-    end = whole.end() if whole else place
     coded = _DIGITS.match(said.simple, place) if _is_coded(digits) else None
-    end = coded.end() if coded else end
+    number = coded or whole
+    end = number.end() if number else place
     fraction = _FRACTION.match(said.simple, end)
     after = fraction.end() if fraction else end
     scale = _SCALE.match(said.simple, after)
-    cents = fraction[1] if fraction and len(fraction[1]) == 2 and not scale and _HUNDREDTHS[currency] else None
+    cents = fraction[1] if fraction and len(fraction[1]) == 2 and not scale and hundredths else None
     main = digits.lstrip("0")
     behind = scale.end() if scale else after
     is_lower = is_range(said, behind) and said.at(behind + 1).isdigit()
-    context = said.context
     context.after, context.tail = "sum", 0
     if cents is None or main or cents == "00":
         if coded:
@@ -111,46 +110,41 @@ def _read_amount(said: Said, place: int, at: int, is_upper: bool) -> Tuple[int, 
     if cents is not None and cents != "00":
         if main:
             said.say("and", end)
-        said.say(" ".join(cardinal(cents)) + " " + inflected(_HUNDREDTHS[currency], cents != "01"), end)
+        said.say(" ".join(cardinal(cents)) + " " + inflected(hundredths, cents != "01"), end)
     return read_range(said, after), is_lower
 
 
 def read_number(said: Said, place: int) -> int:
     """Reads what begins with a digit; returns the place behind it."""
-    is_start = not re.match("[A-Za-z0-9\1]", said.at(place - 1))
-    is_month = said.context.after == "month"
-    is_counted = said.context.after in ("one", "number")
-    is_name = said.context.after == "place" or said.letters
-    called = said.context.after if said.context.after in ("call", "phone") else ""
-    if said.context.after in ("no", "date"):
+    context, after = said.context, said.context.after
+    is_start = not signs.is_inside(said.at(place - 1))
+    is_month = after == "month"
+    if after in ("no", "date"):
         said.correct(place)
-        is_month = said.context.short.title() in MONTHS
-    is_sum = said.context.after == "money"
-    if said.context.after != "unit":
-        said.context.mark = ""
-    said.context.after, said.context.tail, said.context.named = "number", 0, False
-    if is_sum and is_start:
+        is_month = context.short.title() in MONTHS
+    if after != "unit":
+        context.mark = ""
+    context.after, context.tail, context.named = "number", 0, False
+    if after == "money" and is_start:
         return _read_amounts(said, place, place)
-    end = _read_group(said, place, called) if called and is_start else None
+    end = _read_group(said, place, after) if after in ("call", "phone") and is_start else None
+    for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
+        end = rule(said, place, after in ("one", "number")) if end is None else end
     if end is not None:
         return end
-    for rule in (_read_date, _read_phone, _read_time, _read_share, _read_feet, _read_decade) if is_start else ():
-        end = rule(said, place, is_counted)
-        if end is not None:
-            return end
     day = _DAY.match(said.simple, place) if is_month and is_start else None
     if day and 1 <= int(day[1]) <= 31:
         say_ordinal(said, day[1], place)
         end = read_range(said, day.end())
-        said.context.after = "month" if end > day.end() else ""
+        context.after = "month" if end > day.end() else ""
         return end
     year = _YEAR.match(said.simple, place) if is_start else None
     if year and not year[0].startswith("200"):
         said.say(" ".join(_year(year[0])), place)
         return read_range(said, year.end())
     end = _read_plain(said, place, is_start)
-    if is_name and _LETTER.match(said.simple, end):
-        said.context.after = "place"
+    if (after == "place" or said.letters) and _LETTER.match(said.simple, end):
+        context.after = "place"
     return end
 
 
@@ -168,12 +162,10 @@ def _read_plain(said: Said, place: int, is_start: bool) -> int:
         ordinal = _ORDINAL.match(said.simple, end)
         if ordinal:
             say_ordinal(said, digits, place)
-            said.context.after = ""
-            said.context.named = True
+            said.context.after, said.context.named = "", True
             return ordinal.end()
         if _PLURAL.match(said.simple, end) and (said.letters or _MODEL.fullmatch(digits)):
-            words = cardinal(digits)
-            said.say(" ".join([*words[:-1], _plural(words[-1])]), place)
+            said.say(_ended(cardinal(digits), _plural), place)
             said.context.after = ""
             return end + 1
         if is_start and not said.context.mark and len(digits) <= 2 and 1 <= int(digits) <= 31:
@@ -310,11 +302,7 @@ def _read_share(said: Said, place: int, is_counted: bool) -> Optional[int]:
         said.say("and", place)
     name = {2: "half", 4: "quarter"}.get(parts)
     said.say("a" if is_counted and name and count == 1 else " ".join(cardinal(found[1])), place)
-    if name:
-        said.say(name + "s" * (count > 1), place)
-    else:
-        words = cardinal(found[2])
-        said.say(" ".join([*words[:-1], _ordinal(words[-1]) + "s" * (count > 1)]), place)
+    said.say((name or _ended(cardinal(found[2]), _ordinal)) + "s" * (count > 1), place)
     return found.end()
 
 
@@ -330,8 +318,7 @@ def _read_decade(said: Said, place: int, _: bool) -> Optional[int]:
     found = _DECADE.match(said.simple, place)
     if not found:
         return None
-    words = _year(found[1]) if len(found[1]) == 4 else cardinal(found[1])
-    said.say(" ".join([*words[:-1], _plural(words[-1])]), place)
+    said.say(_ended(_year(found[1]) if len(found[1]) == 4 else cardinal(found[1]), _plural), place)
     said.context.after = ""
     return read_range(said, found.end())
 
@@ -359,17 +346,18 @@ def read_fraction(said: Said, point: int) -> int:
 
 def say_ordinal(said: Said, digits: str, place: int) -> None:
     """Says a number as an ordinal."""
-    words = cardinal(digits)
-    said.say(" ".join([*words[:-1], _ordinal(words[-1])]), place)
+    said.say(_ended(cardinal(digits), _ordinal), place)
+
+
+def _ended(words: List[str], ending: Callable[[str], str]) -> str:
+    return " ".join([*words[:-1], ending(words[-1])])
 
 
 def cardinal(digits: str) -> List[str]:
     """The words of up to 15 digits."""
-    filled = digits.rjust(15, "0")
     words: List[str] = []
-    for number, name in enumerate(_SCALES):
-        part = _below_thousand(int(filled[3 * number : 3 * number + 3]))
-        words += part + [name] * bool(part and name)
+    for part, name in zip(re.findall("...", digits.rjust(15, "0")), _SCALES):
+        words += _below_thousand(int(part)) + [name] * bool(int(part) and name)
     return words or ["zero"]
 
 

@@ -1,24 +1,17 @@
 """Packs tables of words into the bytes that ``include/labial/words.h`` describes and ``lib/words.c`` reads, and writes
 them as C.
 
-Node
-    Two bytes, the higher first: ``question << 7 | kind << 5 | five``. Kind 0: both answers lead to leaves; `five` is
-    the one for yes, the next byte the one for no. Kind 1: yes leads to the leaf `five`, the node for no follows. Kind
-    2: no leads to the leaf `five`, the node for yes follows. Kind 3: both lead to nodes; `five` and the next byte (the
-    lower 8 bits) are the length of the part for yes, which follows, and then that for no. A leaf is a place in the
-    letter's own list of labels, the most frequent first.
-
-Exceptions
-    A word's hash is FNV-1a over the numbers of its letters, times `multiplier`, modulo 2^32. Its first byte is the
-    bucket; a bucket's entries are ordered by the next two bytes, which they begin with. Patches follow, two bytes each:
-    ``last << 15 | label << 5 | letter``. The spelling is not stored. The multiplier is chosen so that no other word of
-    the dictionary has the first 24 bits of an exception's hash.
+A letter's labels are in its own list, the most frequent first. A word's hash is FNV-1a over the numbers of its letters,
+times `multiplier`, modulo 2^32; its first byte is the bucket, and a bucket's entries are ordered by the next two. The
+spelling is not stored: the multiplier is chosen so that no other word of the dictionary has the first 24 bits of an
+exception's hash.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 from typing import Iterable, List, Sequence, Tuple
 
@@ -59,8 +52,8 @@ class PackedWords:
     @property
     def size(self) -> int:
         """Bytes in flash."""
-        return (len(self.trees) + 2 * len(self.roots) + 2 * len(self.bases) + len(self.leaves) + 2 * len(self.labels)
-                + 2 * len(self.buckets) + len(self.patches))
+        words = (self.roots, self.bases, self.labels, self.buckets)
+        return sum(map(len, (self.trees, self.leaves, self.patches))) + 2 * sum(map(len, words))
 
 
 def pack(tables: WordTables) -> PackedWords:
@@ -123,20 +116,14 @@ def _label(sound: int) -> Tuple[int, int]:
 
 def _exceptions(tables: WordTables) -> Tuple[Tuple[int, ...], bytes]:
     """The places of the 256 buckets and their end, and the bytes of all entries."""
-    found: List[Tuple[int, bytes]] = []
+    buckets: List[List[bytes]] = [[] for _ in range(256)]
     for word, patches in tables.exceptions.items():
-        entry = bytearray()
-        for number, (place, label) in enumerate(patches, 1):
-            entry += (((number == len(patches)) << 15) | label << 5 | place).to_bytes(2, "big")
-        found.append(((hash_of(word) * tables.multiplier & 0xFFFFFFFF) >> 8, bytes(entry)))
-    buckets, data = [], bytearray()
-    found.sort()
-    for bucket in range(256):
-        buckets.append(len(data))
-        for key, changes in found:
-            if key >> 16 == bucket:
-                data += (key & 0xFFFF).to_bytes(2, "big") + changes
-    return (*buckets, len(data)), bytes(data)
+        key = (hash_of(word) * tables.multiplier & 0xFFFFFFFF) >> 8
+        entry = [key & 0xFFFF, *(label << 5 | place for place, label in patches)]
+        entry[-1] |= 1 << 15
+        buckets[key >> 16].append(b"".join(item.to_bytes(2, "big") for item in entry))
+    data = [b"".join(sorted(bucket)) for bucket in buckets]
+    return tuple(accumulate(map(len, data), initial=0)), b"".join(data)
 
 
 assert LONGEST <= 32 and LABELS_MOST <= 64

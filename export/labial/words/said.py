@@ -62,10 +62,8 @@ class Said:
     def spell(self, word: str, place_of: Callable[[int], int],
               sounds: Sequence[Optional[Tuple[str, ...]]] = ()) -> None:
         """Adds a spoken word, whose letter i belongs to the simple character ``place_of(i)``."""
-        first = True
-        for phoneme, letter in read(self.tables, word, sounds):
-            self.add(phoneme, place_of(letter), first)
-            first = False
+        for number, (phoneme, letter) in enumerate(read(self.tables, word, sounds)):
+            self.add(phoneme, place_of(letter), number == 0)
 
     def say(self, words: str, place: int) -> None:
         """Adds words, which are separated by blanks, at one simple character."""

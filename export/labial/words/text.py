@@ -29,20 +29,17 @@ _BEFORE = {"#": "number", "<": "less than", ">": "greater than", "~": "about", "
 _POWERS = {signs.SQUARE: "square ", signs.CUBE: "cubic "}
 #: Abbreviations, and words that the trees would misread, with what is said, or - if they are read letter by letter.
 _MEANINGS: Dict[str, str] = dict(line.split(" ", 1) for line in """mr mister;mrs missiz;ms mizz;dr doctor;st saint
-prof professor;appt appointment;qty quantity;jr junior;sr senior;vs versus;etc etcetera
-approx approximately;dept department;govt government
-blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captain;lt lieutenant
-wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg;jpg jay peg
-mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
-facade fah sod;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please
-thx thanks;nato nay toe;uber oober;xbox ex box;gmail jee mail;gee jee;youtube you tube;android an droid;nvidia en vidia
-mysql my sequel;nginx engine ex;kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may
-bouquet boo kay;ballet bal lay;cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control
-airbnb air bee en bee;pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -
-uk -;eu -;ai -;id -;nba -;xyz -;hdmi -;hbo -;tba -;ttyl -
-wwi double_you double_you one;wwii double_you double_you two
-lmao -;imo -;ugh ug;whoa woe;eww ee you;yuck yuk;lemme lemmy"""
-                               .replace("\n", ";").split(";"))
+prof professor;appt appointment;qty quantity;jr junior;sr senior;vs versus;etc etcetera;approx approximately
+dept department;govt government;blvd boulevard;rd road;hwy highway;mt mount;ltd limited;sgt sergeant;capt captain
+lt lieutenant;wi why;fi fie;wifi why fie;ph -;phd -;www -;http -;https -;ftp -;edu ee dee you;ascii askey;jpeg jay peg
+jpg jay peg;mpeg em peg;json jason;yaml yamel;hvac aitch vack;cmos sea moss;hipaa hippa;gnu new;pp pages;vol volume
+facade fah sod;ok -;omg -;idk -;btw -;fyi -;tbh -;pls please;plz please;thx thanks;nato nay toe;uber oober;xbox ex box
+gmail jee mail;gee jee;youtube you tube;android an droid;nvidia en vidia;mysql my sequel;nginx engine ex
+kubernetes cooper netties;latte lah tay;karate cah rah tee;anime annie may;bouquet boo kay;ballet bal lay
+cliche klee shay;debris deh bree;openai open ay eye;ext extension;ctrl control;airbnb air bee en bee
+pilates pee lah teez;y'all yawl;usb -;cpu -;gpu -;url -;abc -;diy -;faq -;ceo -;cfo -;usa -;uk -;eu -;ai -;id -;nba -
+xyz -;hdmi -;hbo -;tba -;ttyl -;wwi double_you double_you one;wwii double_you double_you two;lmao -;imo -;ugh ug
+whoa woe;eww ee you;yuck yuk;lemme lemmy""".replace("\n", ";").split(";"))
 #: What they mean behind a name; the first two unless another one follows; and words that are no names, at a sentence's
 #: beginning.
 _STREETS = {"st": "street", "dr": "drive", "ave": "avenue", "ln": "lane"}
@@ -67,16 +64,15 @@ _SCALES = "hundred thousand million billion trillion".split()
 _UNITS: Dict[str, str] = dict(line.split(" ", 1) for line in """km kilometer_;m meter_;cm centimeter_;mm millimeter_
 nm nanometer_;um micrometer_;kg kilogram_;g gram_;mg milligram_;ug microgram_;lb pound_;lbs pound_;oz ounce_
 ft foot|feet;yd yard_;mi mile_;mph mile_ per hour;kph kilometer_ per hour;L liter_;l liter_;ml milliliter_
-mL milliliter_;cl centiliter_;dl deciliter_;dL deciliter_;gal gallon_;s second_;sec second_;secs second_;ms millisecond_
-us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz;kHz kilohertz
-MHz megahertz;GHz gigahertz
-kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_;kbps kilobit_ per second;Mbps megabit_ per second
-Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_;GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_
-mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_;dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_
-rpm are pee em;bpm bee pee em;fps eff pee ess;mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_
-CAD canadian dollar_;AUD australian dollar_;CHF swiss franc_;JPY yen;INR rupee_
-yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square;fl fluid
-M million;bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
+mL milliliter_;cl centiliter_;dl deciliter_;dL deciliter_;gal gallon_;s second_;sec second_;secs second_
+ms millisecond_;us microsecond_;ns nanosecond_;min minute_;mins minute_;h hour_;hr hour_;hrs hour_;Hz hertz
+kHz kilohertz;MHz megahertz;GHz gigahertz;kB kilobyte_;KB kilobyte_;MB megabyte_;GB gigabyte_;TB terabyte_
+kbps kilobit_ per second;Mbps megabit_ per second;Gbps gigabit_ per second;W watt_;kW kilowatt_;MW megawatt_
+GW gigawatt_;Wh watt hour_;kWh kilowatt hour_;V volt_;mV millivolt_;kV kilovolt_;mA milliamp_;mAh milliamp hour_
+dB decibel_;px pixel_;cal calorie_;kcal kilocalorie_;rpm are pee em;bpm bee pee em;fps eff pee ess
+mpg mile_ per gallon;EUR euro_;GBP pound_;USD you ess dollar_;CAD canadian dollar_;AUD australian dollar_
+CHF swiss franc_;JPY yen;INR rupee_;yr year_;yrs year_;tbsp tablespoon_;tsp teaspoon_;sq square;fl fluid;M million
+bn billion;in inch|inches;A amp_;C degree_ celsius;F degree_ fahrenheit""".replace("\n", ";").split(";"))
 _ATTACHED = ("M", "bn", "in", "A", "C", "F")
 #: Units behind which another number and its unit belong to the same length or duration, and what marks them.
 _PARTED = {"foot|feet": "f", "hour_": "h"}
@@ -88,10 +84,13 @@ _WORDS = frozenset("""AN AS AT BE BY DO GO HE HI IF IN IS ME MY NO OF OH ON OR O
     ACE ACT ADD AGE AGO AHA AID AIM AIR ALL AND ANT ANY APP ARC ARE ARM ART ASH ASK ATE AXE EAR EAT EGG END EVE EYE ICE
     ILL INK INN ITS OAK ODD OFF OIL OLD ONE OUR OUT OWE OWN UGH USE GYM VIA AMY AVA BYE EVA IAN MIA LYNX MYTH NYMPH
     QUEUE""".split())
-#: Letters without a vowel, not all capitals, that are not read one by one: sounds and parts of words.
+#: Of letters that are not all capitals, two to five without a vowel, none of them three times in a row, are read one by
+#: one, but for sounds and parts of words.
 _SOUNDS = frozenset("""hm hmm mm mhm grr brr pfft pff pst psst sh shh ssh tsk tss tch hmph nth zz bzz ll nt th
     nd mc ng""".split())
 _SMALL = re.compile(r"(?!.*(.)\1\1)[b-df-hj-np-tv-xz]{2,5}$")
+#: Parts of an address that are: countries, and what has no vowel.
+_SPELT_IN_ADDRESS = re.compile("(?!co|go|me)[a-z]{2}|[b-df-hj-np-tv-xz]{1,4}")
 #: Words unless the word before is not in capitals.
 _SHOUTED = frozenset(["AM", "IT", "US", "WHO"])
 _ONSETS = frozenset("""BL BR CH CL CR DR DW FL FR GH GL GR KN PH PL PR SC SH SK SL SM SN SP ST SQ SW TH TR TW WH WR SCR
@@ -109,7 +108,7 @@ _VERBS = """applaud beam blink blush breath burp chuckl clap clapp clear cough c
 _ALONE = frozenset("""applause beat blush breath chuckle clap cough cry gasp giggle grin groan gulp hum
     laugh laughter mumble music mutter nod pause quietly scream shout shrug sigh silence smile smirk sniff snort sob
     softly whisper whistle wink yawn yell""".split())
-_ENDINGS, _LONGEST_VERB = ("s", "es", "ing"), 12
+_DIRECTIONS, _LONGEST_VERB = frozenset(verb + end for verb in _VERBS for end in ("s", "es", "ing")), 12
 #: Words in -s that are not verbs.
 _NOT_VERBS = frozenset("always perhaps sometimes things this does yours ours theirs hers towards besides".split())
 
@@ -217,15 +216,11 @@ class _Reader:
 
     def _is_direction(self, place: int, closing: str) -> bool:
         found = re.compile("[A-Za-z]+").match(self.simple, place + 1)
-        if not found or signs.is_inside(self.said.at(found.end())):
+        follows = self.said.at(found.end()) if found else ""
+        if not found or signs.is_inside(follows) or len(found[0]) > _LONGEST_VERB:
             return False
         word = found[0].lower()
-        follows = self.said.at(found.end())
-        if len(word) > _LONGEST_VERB:
-            return False
-        if closing in (follows, "]") and word in _ALONE:
-            return True
-        if any(word == verb + end for verb in _VERBS for end in _ENDINGS):
+        if (closing in (follows, "]") and word in _ALONE) or word in _DIRECTIONS:
             return True
         return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
                 and not word.endswith("ss") and word not in _NOT_VERBS)
@@ -234,9 +229,10 @@ class _Reader:
 
     def _read_sign(self, place: int, here: str, before: str) -> int:
         said, follows = self.said, self.said.at(place + 1)
-        is_tag = here == "<" and (follows in "/!?" or (follows.isascii() and follows.isalpha()))
-        if is_tag or (here == "[" and self._is_tag(place)):
-            return self._open("]" if here == "[" else ">", place)
+        if here == "[" and self._is_tag(place):
+            return self._open("]", place)
+        if here == "<" and (follows in "/!?" or (follows.isascii() and follows.isalpha())):
+            return self._open(">", place)
         if here == "]" and follows == "(":
             return self._open(")", place + 1)
         if here in "(*" and before != "*" and self._is_direction(place, ")" if here == "(" else "*"):
@@ -244,8 +240,7 @@ class _Reader:
         if self.context.after in ("date", "day", "place") and here in ",-/" and before != BLANK and not self.address:
             self.context.named = False
             return place + 1
-        after = self._forget()
-        self.context.tail, self.context.named = 0, False
+        after, self.context.tail, self.context.named = self._forget(), 0, False
         if after in ("call", "phone") and here in "(+):":
             self.context.after = after
         if here == "-" and after in ("one", "number") and re.match("[A-Za-z]{2}", self.simple[place + 1 :]):
@@ -253,9 +248,14 @@ class _Reader:
             if end:
                 return end
         said.letters &= here == "-"
-        is_counted = after in ("one", "number")
+        is_counted, currency = after in ("one", "number"), numbers.currency_of(here)
         if here == signs.DEGREE:
-            return self._read_degrees(place, after)
+            said.say("degree" if after == "one" else "degrees", place)
+            scale = {"C": "celsius", "F": "fahrenheit"}.get(follows)
+            if not scale or signs.is_inside(said.at(place + 2)):
+                return place + 1
+            said.say(scale, place + 1)
+            return place + 2
         if here == "." and follows.isdigit() and not signs.is_inside(before):
             self.context.after = "number"
             return numbers.read_fraction(said, place)
@@ -266,12 +266,10 @@ class _Reader:
             return self._read_joint(place, here, before, follows)
         elif here == signs.MINUS:
             said.say("minus", place)
-        elif here == signs.CENT and is_counted:
-            said.say(inflected("cent_", after == "number"), place)
-        elif numbers.currency_of(here) >= 0 and is_counted:
-            said.say(inflected(numbers.CURRENCIES[numbers.currency_of(here)], after == "number"), place)
-        elif numbers.currency_of(here) >= 0 and follows == BLANK:
-            self.context.after, self.context.currency = "money", numbers.currency_of(here)
+        elif (here == signs.CENT or currency >= 0) and is_counted:
+            said.say(inflected("cent_" if currency < 0 else numbers.CURRENCIES[currency], after == "number"), place)
+        elif currency >= 0 and follows == BLANK:
+            self.context.after, self.context.currency = "money", currency
         elif here in _BEFORE and follows.isdigit():
             said.say(_BEFORE[here], place)
         elif here == "#" and before.isascii() and before.isalpha() and not signs.is_inside(follows):
@@ -286,14 +284,6 @@ class _Reader:
         elif here in _SIGNS:
             said.say(_SIGNS[here], place)
         return numbers.read_range(said, place + 1) if here == "%" else place + 1
-
-    def _read_degrees(self, place: int, after: str) -> int:
-        self.said.say("degree" if after == "one" else "degrees", place)
-        scale = self.said.at(place + 1)
-        if scale in ("C", "F") and not signs.is_inside(self.said.at(place + 2)):
-            self.said.say("celsius" if scale == "C" else "fahrenheit", place + 1)
-            return place + 2
-        return place + 1
 
     def _read_joint(self, place: int, here: str, before: str, follows: str) -> int:
         """Signs that are said within an address, a minus before a number."""
@@ -437,14 +427,12 @@ class _Reader:
                 said.say_names(small, places, False)
             else:
                 said.say(_MEANINGS[small], place)
-        elif self.address and before == "." and self._is_spelt_in_address(small):
+        elif self.address and before == "." and _SPELT_IN_ADDRESS.fullmatch(small):
             said.say_names(small, places, False)
-        elif self._is_spelt(run, before, follows, shouting):
-            letters = _capitals(run) or owner
-            said.say_names(letters.lower(), places, letters != run)
         else:
-            self._spell(run, places)
-            context.shouting = run.isupper() and (len(run) > 1 or run == "I")
+            is_spelt = self._is_spelt(run, before, follows, shouting)
+            self._spell(run, places, is_spelt)
+            context.shouting = not is_spelt and run.isupper() and (len(run) > 1 or run == "I")
         return False
 
     def _read_date(self, run: str, name: str, places: Sequence[int], after: str, is_pointed: bool) -> None:
@@ -470,11 +458,7 @@ class _Reader:
     def _spell_tail(self, run: str, places: Sequence[int], is_spelt: bool) -> None:
         """Says a word that the next one may take back."""
         before = len(self.said.phonemes)
-        letters = _capitals(run) or _owner(run)
-        if is_spelt:
-            self.said.say_names(letters.lower(), places, letters != run)
-        else:
-            self._spell(run, places)
+        self._spell(run, places, is_spelt)
         self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
 
     def _month(self, place: int, after: str) -> str:
@@ -485,14 +469,13 @@ class _Reader:
         numbers.say_ordinal(self.said, str(self.context.day), place)
         return ""
 
-    def _spell(self, run: str, places: Sequence[int]) -> None:
+    def _spell(self, run: str, places: Sequence[int], is_spelt: bool = False) -> None:
+        if is_spelt:
+            letters = _capitals(run) or _owner(run)
+            self.said.say_names(letters.lower(), places, letters != run)
+            return
         sounds = [self.said.characters[places[letter]].sound for letter in range(len(run))]
         self.said.spell(run.lower(), lambda letter: places[letter], sounds)
-
-    def _is_spelt_in_address(self, small: str) -> bool:
-        """Whether a part of an address is read letter by letter: a country, or what has no vowel."""
-        return small.isalpha() and (len(small) == 2 and small not in ("co", "go", "me") or len(small) <= 4
-                                    and not re.search("[aeiouy]", small))
 
     def _is_spelt(self, run: str, before: str, follows: str, shouting: bool) -> bool:
         """Whether letters are read one by one."""
@@ -500,7 +483,8 @@ class _Reader:
             return run not in "aAiI" or (run == "A" and (bool(re.search("[0-9&+/]", before)) or follows != BLANK))
         letters = _capitals(run)
         if not letters:
-            return _is_spelt_small(_owner(run).lower())
+            small = _owner(run).lower()
+            return small not in _SOUNDS and bool(_SMALL.match(small))
         if len(letters) == 1:
             return before == "&" or (before.isascii() and before.isalpha())
         if len(letters) > 5:
@@ -538,11 +522,9 @@ def _run_at(simple: str, place: int) -> Tuple[str, List[int]]:
 
 def _date_of(run: str) -> str:
     """The month or day whose name a run is or begins: with three letters, or up to five from s on; or nothing."""
-    if run == run.title() and len(run) > 2:
-        for name in (*numbers.MONTHS, *numbers.DAYS):
-            if run == name or (name.startswith(run) and len(run) <= (5 if name[0] >= "S" else 3)):
-                return name
-    return ""
+    names = (*numbers.MONTHS, *numbers.DAYS) if run == run.title() and len(run) > 2 else ()
+    return next((name for name in names if name.startswith(run) and (
+        run == name or len(run) <= (5 if name[0] >= "S" else 3))), "")
 
 
 def _roman(run: str, is_named: bool) -> int:
@@ -561,12 +543,6 @@ def _owner(run: str) -> str:
     return run[:-2] if len(run) > 2 and run.lower().endswith("'s") else run
 
 
-def _is_spelt_small(letters: str) -> bool:
-    """Whether letters are read one by one that are not all capitals: two to five without a vowel, none of them three
-    times in a row."""
-    return letters not in _SOUNDS and bool(_SMALL.match(letters))
-
-
 def _capitals(run: str) -> str:
     """The capitals that a run consists of, but for an s or 's behind them; nothing for other runs."""
     found = re.fullmatch("([A-Z]+)(?:'?s)?", run)
@@ -581,14 +557,9 @@ def is_pronounceable(letters: str) -> bool:
         return False
     first, last = vowels.index(True), len(letters) - vowels[::-1].index(True)
     onset, coda = letters[:first], letters[last:]
-    if (len(onset) > 1 and onset not in _ONSETS) or not _is_coda(coda):
-        return False
-    if not re.search("[AEIOU]", letters) and coda:
+    is_coda = not coda or coda in _CODAS or (coda[-1] == "S" and coda[:-1] in _CODAS)
+    if (len(onset) > 1 and onset not in _ONSETS) or not is_coda or (coda and not re.search("[AEIOU]", letters)):
         return False
     runs = re.findall("[AEIOUY]+", letters[first:last])
     allowed = _LAST_PAIRS if len(letters) == 3 else _PAIRS
     return all(len(run) == 1 or run in allowed for run in runs)
-
-
-def _is_coda(coda: str) -> bool:
-    return not coda or coda in _CODAS or (coda[-1] == "S" and coda[:-1] in _CODAS)

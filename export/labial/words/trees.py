@@ -95,29 +95,19 @@ class Asked:
     """All questions at once, for growing trees: which values of which feature are answered by yes."""
 
     def __init__(self, sounds: Sequence[int]) -> None:
-        label = np.arange(64)
-        known = label < len(sounds)
-        self.feature = np.zeros(QUESTIONS, dtype=int)  #: (QUESTIONS,) the feature that each one looks at
+        #: (QUESTIONS,) the feature that each one looks at
+        self.feature = np.repeat(np.arange(FEATURES), [32] * 8 + [64] * 2 + [8] * 2)
         self.yes = np.zeros((QUESTIONS, 64), dtype=bool)  #: (QUESTIONS, 64) the answer for each value of it
-        for question in range(QUESTIONS):
-            if question < _LABELS:
-                self.feature[question] = question // 32
-            elif question < _RIGHT:
-                self.feature[question] = 8 + (question - _LABELS) // 64
-            else:
-                self.feature[question] = 10 if question < _LEFT else 11
-            for value in label:
-                if not known[value] and value != OUTSIDE and self.feature[question] in (8, 9):
-                    continue
-                values = [int(value)] * FEATURES
-                self.yes[question, value] = answer(question, values, sounds)
+        for question, feature in enumerate(self.feature):
+            for value in range(64):
+                if value < len(sounds) or value == OUTSIDE or feature not in (8, 9):
+                    self.yes[question, value] = answer(question, [value] * FEATURES, sounds)
 
     def counts(self, histogram: np.ndarray) -> np.ndarray:
         """(QUESTIONS, L) of a `histogram` (FEATURES, 64, L), both of whole numbers: how many samples of each label
         answer yes. Sums of whole numbers are exact in float64, in which they are computed."""
-        shape = histogram.shape[2]
-        parts = [np.matmul(yes, histogram[first : first + len(yes)]).reshape(-1, shape) for first, yes in self._blocks]
-        return np.concatenate(parts)
+        return np.concatenate([np.matmul(yes, histogram[first : first + len(yes)]).reshape(-1, histogram.shape[2])
+                               for first, yes in self._blocks])
 
     @cached_property
     def _blocks(self) -> List[Tuple[int, np.ndarray]]:
@@ -166,16 +156,12 @@ class _Growth:
     """A tree in the making."""
 
     def __init__(self, samples: Samples, asked: Asked) -> None:
-        self.asked = asked
-        self.present = np.unique(samples.labels)
-        self.samples = samples
-        self.local = np.searchsorted(self.present, samples.labels)
+        self.asked, self.samples = asked, samples
+        self.present, self.local = np.unique(samples.labels, return_inverse=True)
         self.nodes: List[List[int]] = []
-        total = int(samples.weights.sum())
-        numbers = np.arange(total + 1, dtype=float)
+        numbers = np.arange(int(samples.weights.sum()) + 1, dtype=float)
         self.bits = np.rint(_SCALE * numbers * np.log(np.maximum(numbers, 1.0))).astype(np.int64)
-        size = len(self.present)
-        base = (np.arange(FEATURES) * 64 + samples.features.astype(np.int64)) * size
+        base = (np.arange(FEATURES) * 64 + samples.features.astype(np.int64)) * len(self.present)
         self.cells = base + self.local[:, None]
 
     def impurity(self, counts: np.ndarray) -> np.ndarray:
@@ -184,13 +170,11 @@ class _Growth:
 
     def split(self, rows: np.ndarray, here: np.ndarray) -> Tuple[int, np.ndarray]:
         """The best question about the samples `rows`, -1 for none, and which of them answer yes."""
-        weights = self.samples.weights[rows]
-        shape = (FEATURES, 64, len(self.present))
-        histogram = np.bincount(self.cells[rows].ravel(), np.repeat(weights, FEATURES), FEATURES * 64 * shape[2])
-        yes = self.asked.counts(histogram.reshape(shape)).astype(np.int64)
-        no = here - yes
+        weights = np.repeat(self.samples.weights[rows], FEATURES)
+        histogram = np.bincount(self.cells[rows].ravel(), weights, FEATURES * 64 * len(here))
+        yes = self.asked.counts(histogram.reshape(FEATURES, 64, len(here))).astype(np.int64)
         sums = yes.sum(axis=1)
-        gain = self.impurity(here) - self.impurity(yes) - self.impurity(no)
+        gain = self.impurity(here) - self.impurity(yes) - self.impurity(here - yes)
         gain[(sums < _LEAST) | (here.sum() - sums < _LEAST)] = -1
         best = int(np.argmax(gain))
         if gain[best] <= 0:
@@ -202,16 +186,12 @@ class _Growth:
         here = np.bincount(self.local[rows], self.samples.weights[rows], len(self.present)).astype(np.int64)
         label = int(np.argmax(here))
         errors = int(here.sum() - here[label])
-        node = [-1, 0, 0, int(self.present[label]), errors]
-        number = len(self.nodes)
+        node, number = [-1, 0, 0, int(self.present[label]), errors], len(self.nodes)
         self.nodes.append(node)
-        if errors <= _CHEAP or depth >= _DEEPEST:
-            return number
-        question, is_yes = self.split(rows, here)
-        if question >= 0:
-            node[0] = question
-            node[1] = self.grow(rows[is_yes], depth + 1)
-            node[2] = self.grow(rows[~is_yes], depth + 1)
+        if errors > _CHEAP and depth < _DEEPEST:
+            question, is_yes = self.split(rows, here)
+            if question >= 0:
+                node[:3] = question, self.grow(rows[is_yes], depth + 1), self.grow(rows[~is_yes], depth + 1)
         return number
 
 
@@ -225,8 +205,7 @@ def grow(samples: Samples, asked: Asked) -> Tree:
 def _kept(tree: Tree, price: float) -> Tuple[np.ndarray, int]:
     """Which nodes remain split at a price per leaf, and how many leaves that leaves."""
     question, yes, no, errors = (item.tolist() for item in (tree.question, tree.yes, tree.no, tree.errors))
-    cost = [float(value) for value in errors]
-    leaves = [1] * len(errors)
+    cost, leaves = list(map(float, errors)), [1] * len(errors)
     split = np.zeros(len(errors), dtype=bool)
     for node in reversed(range(len(errors))):
         if question[node] < 0:
@@ -243,12 +222,10 @@ def _cut(tree: Tree, split: np.ndarray) -> Tree:
     nodes: List[List[int]] = []
 
     def take(node: int) -> int:
-        number = len(nodes)
-        nodes.append([-1, 0, 0, int(tree.label[node]), int(tree.errors[node])])
+        row, number = [-1, 0, 0, int(tree.label[node]), int(tree.errors[node])], len(nodes)
+        nodes.append(row)
         if split[node]:
-            nodes[number][0] = int(tree.question[node])
-            nodes[number][1] = take(int(tree.yes[node]))
-            nodes[number][2] = take(int(tree.no[node]))
+            row[:3] = int(tree.question[node]), take(int(tree.yes[node])), take(int(tree.no[node]))
         return number
 
     take(0)
@@ -263,10 +240,8 @@ def prune(trees: Sequence[Tree], leaves: int) -> List[Tree]:
     low, high = 0.0, float(1 + max(int(tree.errors[0]) for tree in trees))
     for _ in range(24):
         price = (low + high) / 2
-        if sum(_kept(tree, price)[1] for tree in trees) > leaves:
-            low = price
-        else:
-            high = price
+        is_low = sum(_kept(tree, price)[1] for tree in trees) > leaves
+        low, high = (price, high) if is_low else (low, price)
     if low > 0.0 and high < _CHEAP:
         raise ModelError(f"{leaves} leaves are more than these words can give: choose fewer")
     return [_cut(tree, _kept(tree, high)[0]) for tree in trees]
