@@ -44,16 +44,14 @@ def read_avlaughter(path: PathLike, phone_set: PhoneSet = LAUGHTER,
     reasons: List[DataError] = [] if refused is None else refused
     annotations: Dict[str, Path] = {}
     for file in laugh_files(path):
-        if file.stem in annotations:
+        if annotations.setdefault(file.stem, file) != file:
             raise DataError(file, None, f"there is also {annotations[file.stem]}")
-        annotations[file.stem] = file
     for file in sorted(Path(path).rglob("*.csv")):
         beside = file.stem in annotations and annotations[file.stem].parent == file.parent
         if NAME.fullmatch(file.stem) and not beside:
             raise DataError(file, None, f"no {file.stem}.TextGrid beside it")
     episodes: List[Episode] = []
-    for name in sorted(annotations):
-        annotation = annotations[name]
+    for name, annotation in sorted(annotations.items()):
         motion = annotation.with_suffix(".csv")
         if not motion.is_file():
             reasons.append(DataError(annotation, None, f"no motion; convert it to {motion.name} in the same folder"))

@@ -106,8 +106,7 @@ def read_entries(path: PathLike) -> List[Entry]:
     """The objects of a file: those of a list, a single one, or one per line. Lines may be server-sent events."""
     if isinstance(path, Parsed):
         return [_entry_of(path, None, number, item) for number, item in enumerate(path.items, 1)]
-    text = read_text(path)
-    return [_entry_of(path, line, number, item) for line, number, item in documents(path, text)]
+    return [_entry_of(path, *document) for document in documents(path, read_text(path))]
 
 
 def documents(path: PathLike, text: str, most: Optional[int] = None,
@@ -147,24 +146,21 @@ def loads(path: PathLike, line: Optional[int], text: str) -> Any:
     number of too many digits."""
     try:
         found = json.loads(text)
+        if not _nests_deeper(found, MESSAGE_NESTING):
+            return found
     except json.JSONDecodeError:
         raise
     except (RecursionError, ValueError):
-        found = None
-    if found is None and text.strip() != "null" or _nests_deeper(found, MESSAGE_NESTING):
-        raise DataError(path, line, "JSON that is nested too deeply or has a number of too many digits")
-    return found
+        pass
+    raise DataError(path, line, "JSON that is nested too deeply or has a number of too many digits")
 
 
 def _nests_deeper(value: Any, most: int) -> bool:
-    """Whether lists and objects of parsed JSON nest deeper than `most` levels."""
     level = [value]
     for _ in range(most + 1):
         level = [item for one in level if isinstance(one, (dict, list))
                  for item in (one.values() if isinstance(one, dict) else one)]
-        if not level:
-            return False
-    return True
+    return bool(level)
 
 
 def _content(line: str) -> str:
@@ -183,9 +179,10 @@ def _is_document(line: str) -> bool:
 
 
 def _entry_of(path: PathLike, line: Optional[int], number: int, item: Any) -> Entry:
-    entry = Entry(path, line, number, {}).inner(item)
+    document = Entry(path, line, number, {})
+    entry = document.inner(item)
     if entry is None:
-        raise Entry(path, line, number, {}).error(f"{shown(item)} is not an object")
+        raise document.error(f"{shown(item)} is not an object")
     return entry
 
 

@@ -6,10 +6,8 @@ phonemes: a stress mark's time goes to the vowel after it, that of a length mark
 the two halves of a diphthong or affricate are one phoneme, and punctuation is silence. The blank between two words
 takes time, too, but lips do not rest there: up to `LONGEST_GAP`, its time is added to the phoneme before it.
 
-A service reports fewer visemes than there are phonemes. Each viseme becomes the phoneme that is most frequent in
-English speech among those that it covers or, if two are equally frequent, the one that the viseme is named after. Two
-visemes in a row that occur together in only one English phoneme become that phoneme; rounded lips are W before a vowel,
-else UW.
+docs/timings.md has what each viseme becomes. Two in a row that occur together in only one English phoneme become that
+phoneme; rounded lips are W before a vowel, else UW.
 """
 
 from __future__ import annotations
@@ -18,6 +16,7 @@ import os
 import unicodedata
 from dataclasses import replace
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
@@ -52,14 +51,14 @@ def read_service(path: PathLike, name: str, how: Pronunciation = PLAIN) -> List[
     for item in read_entries(path):
         for told in service.read(item, odd):
             found[told.kind].append((service.utterance(item), told))
-    kind = next((kind for kind, messages in found.items() if any(told.items for _, told in messages)), "")
-    items = _all(found[kind], service.times) if kind else []
+    kind = next((kind for kind, messages in found.items() if any(told.items for _, told in messages)), "words")
+    items = _all(found[kind], service.times)
     if not items:
         advice = f": {service.advice}" if service.advice else ""
         raise DataError(path, None, f"{service.title} times nothing here{advice}")
-    if kind in ("sounds", "labels", "phonemes"):
-        return checked(path, phoneme_segments_of(items, kind))
-    return checked(path, _from_visemes(items, kind) if kind in VISEMES else _from_words(path, items, kind, how))
+    if kind in ("words", "characters"):
+        return checked(path, _from_words(path, items, kind, how))
+    return checked(path, _from_visemes(items, kind) if kind in VISEMES else phoneme_segments_of(items, kind))
 
 
 def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Timed]:
@@ -107,14 +106,11 @@ def phoneme_segments_of(items: Sequence[Timed], kind: str) -> List[SourceSegment
 
 
 def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunciation) -> List[SourceSegment]:
-    def whole(seconds: float) -> int:
-        return round(seconds * 1000)
-
-    if kind == "words":
-        words = [Word(item.text, whole(item.start), None if item.end is None else whole(item.end)) for item in items]
-    else:
-        words = words_of_characters([item.text for item in items], [whole(item.start) for item in items],
-                                    [whole(item.end or item.start) for item in items], how.language)
+    words = [Word(item.text, round(1000 * item.start), None if item.end is None else round(1000 * item.end))
+             for item in items]
+    if kind == "characters":
+        words = words_of_characters([word.text for word in words], [word.start for word in words],
+                                    [word.end or word.start for word in words], how.language)
     for before, word in zip(words, words[1:]):
         if word.start < before.start:
             raise DataError(path, None, f"{word.text!r:.40} begins before {before.text!r:.40}, which comes first")
@@ -122,12 +118,9 @@ def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunci
         timings = timings_of(words, how)
     except StreamError as error:
         raise DataError(path, None, str(error)) from None
-    segments, moment = [], 0
-    for label, length in timings:
-        segments.append(SourceSegment(moment / 1000, (moment + length) / 1000, "" if label == "SIL" else label,
-                                      labels="arpabet"))
-        moment += length
-    return segments
+    ends = [*accumulate((length for _, length in timings), initial=0)]
+    return [SourceSegment(start / 1000, end / 1000, "" if label == "SIL" else label, labels="arpabet")
+            for (label, _), start, end in zip(timings, ends, ends[1:])]
 
 
 def _from_visemes(marks: Sequence[Timed], kind: str) -> List[SourceSegment]:
@@ -138,15 +131,14 @@ def _from_visemes(marks: Sequence[Timed], kind: str) -> List[SourceSegment]:
 
 def stand_ins(names: Sequence[str], kind: str) -> List[Tuple[Tuple[int, int], str]]:
     """The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for."""
-    table = VISEMES[kind]
-    found: List[Tuple[Tuple[int, int], str]] = []
+    table, found = VISEMES[kind], []
     at = 0
     while at < len(names):
-        joined = table.get(" ".join(names[at : at + 2])) if at + 1 < len(names) else None
-        found.append(((at, at), table[names[at]]) if joined is None else ((at, at + 1), joined))
-        at = found[-1][0][1] + 1
-    vowels = VOWELS.split()
-    return [(place, "W" if phoneme == "UW" and following in vowels and following != "UW" else phoneme)
+        end = at + (" ".join(names[at : at + 2]) in table and at + 1 < len(names))
+        found.append(((at, end), table[" ".join(names[at : end + 1])]))
+        at = end + 1
+    vowels = set(VOWELS.split()) - {"UW"}
+    return [(place, "W" if phoneme == "UW" and following in vowels else phoneme)
             for (place, phoneme), following in zip(found, [phoneme for _, phoneme in found[1:]] + [""])]
 
 

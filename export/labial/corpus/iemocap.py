@@ -50,20 +50,13 @@ NOSTRILS = ("LNSTRL", "RNSTRL")
 _X, _Y, _Z = 0, 1, 2
 CHANNEL_MARKERS = (
     ("CH2", _Z, -1, "MNS"),  # 3 open_jaw
-    ("Mou7", _Y, -1, "MNS"),  # 16 push_b_lip
-    ("Mou3", _Y, -1, "MNS"),  # 17 push_t_lip
-    ("Mou3", _Z, -1, "MNS"),  # 51 lower_t_midlip_o
-    ("Mou7", _Z, +1, "MNS"),  # 52 raise_b_midlip_o
-    ("Mou5", _X, +1, "MW"),  # 53 stretch_l_cornerlip_o
-    ("Mou1", _X, -1, "MW"),  # 54 stretch_r_cornerlip_o
-    ("Mou4", _Z, -1, "MNS"),  # 55 lower_t_lip_lm_o
-    ("Mou2", _Z, -1, "MNS"),  # 56 lower_t_lip_rm_o
-    ("Mou6", _Z, +1, "MNS"),  # 57 raise_b_lip_lm_o
-    ("Mou8", _Z, +1, "MNS"),  # 58 raise_b_lip_rm_o
-    ("Mou5", _Z, +1, "MNS"),  # 59 raise_l_cornerlip_o
-    ("Mou1", _Z, +1, "MNS"),  # 60 raise_r_cornerlip_o
+    ("Mou7", _Y, -1, "MNS"), ("Mou3", _Y, -1, "MNS"),  # 16 push_b_lip, 17 push_t_lip
+    ("Mou3", _Z, -1, "MNS"), ("Mou7", _Z, +1, "MNS"),  # 51 lower_t_midlip_o, 52 raise_b_midlip_o
+    ("Mou5", _X, +1, "MW"), ("Mou1", _X, -1, "MW"),  # 53 and 54 stretch_*_cornerlip_o, left and right
+    ("Mou4", _Z, -1, "MNS"), ("Mou2", _Z, -1, "MNS"),  # 55 and 56 lower_t_lip_*m_o
+    ("Mou6", _Z, +1, "MNS"), ("Mou8", _Z, +1, "MNS"),  # 57 and 58 raise_b_lip_*m_o
+    ("Mou5", _Z, +1, "MNS"), ("Mou1", _Z, +1, "MNS"),  # 59 and 60 raise_*_cornerlip_o
 )
-assert len(CHANNEL_MARKERS) == CHANNELS
 
 _MARKERS = (*MOUTH, *NOSTRILS, *HEAD)
 _INDEX = {name: number for number, name in enumerate(_MARKERS)}
@@ -142,22 +135,17 @@ def markers_to_faps(markers: np.ndarray, neutral: np.ndarray) -> np.ndarray:
     for name, unit in units.items():
         if not unit > 0:
             raise ValueError(f"the neutral face's {name} is {unit:g}; is X to the subject's left and Z up?")
-    faps = np.empty((len(markers), CHANNELS))
-    for channel, (name, axis, sign, of) in enumerate(CHANNEL_MARKERS):
-        faps[:, channel] = sign * 1024 / units[of] * (markers[:, _INDEX[name], axis] - neutral[_INDEX[name], axis])
-    return faps
+    return np.stack([sign * 1024 / units[of] * (markers[:, _INDEX[name], axis] - neutral[_INDEX[name], axis])
+                     for name, axis, sign, of in CHANNEL_MARKERS], axis=1)
 
 
 def neutral_face(utterances: List[_Utterance], silence: str) -> np.ndarray:
     """(M, 3) median position of each marker in the inner part of the silences of aligned utterances. With under half a
     second of silence: over the fifth of all frames in which the lips are closest to each other."""
     everything = np.concatenate([item.markers for item in utterances])
-    still = []
-    for item in utterances:
-        for segment in item.segments:
-            if segment.label == silence:
-                still.append(item.markers[(item.times >= segment.start + 0.05) & (item.times < segment.end - 0.05)])
-    pool = np.concatenate(still) if still else everything[:0]
+    pool = np.concatenate([everything[:0], *(
+        item.markers[(item.times >= segment.start + 0.05) & (item.times < segment.end - 0.05)]
+        for item in utterances for segment in item.segments if segment.label == silence)])
     if np.isfinite(pool[:, : len(MOUTH)]).all(axis=(1, 2)).sum() < RATE / 2:
         aperture = everything[:, _INDEX["Mou3"], _Z] - everything[:, _INDEX["Mou7"], _Z]
         if not np.isfinite(aperture).any():
@@ -180,9 +168,7 @@ def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
     for file in sorted(Path(path).glob("Session*/sentences/MOCAP_rotated/*/*.txt")):
         if not file.name.startswith(".") and not _is_listener(file):
             dialogs.setdefault(file.parent.name, []).append(file)
-    episodes: List[Episode] = []
-    for name in sorted(dialogs):
-        episodes += _read_dialog(dialogs[name], phone_set, reasons)
+    episodes = [episode for _, files in sorted(dialogs.items()) for episode in _read_dialog(files, phone_set, reasons)]
     if not episodes:
         reason = f"; the first reason is {reasons[0]}" if reasons else ""
         raise DataError(path, None, f"no usable utterance in Session*/sentences/MOCAP_rotated{reason}")
@@ -192,12 +178,13 @@ def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
 def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError]) -> List[Episode]:
     utterances = []
     for file in files:
-        alignment = file.parents[2] / "ForcedAlignment" / file.parent.name / (file.stem + ".phseg")
+        sentences, dialog = file.parents[2], file.parent.name
+        alignment = sentences / "ForcedAlignment" / dialog / f"{file.stem}.phseg"
         if not alignment.is_file():
             refused.append(DataError(file, None, "no .phseg in ForcedAlignment"))
             continue
         segments = phoneme_segments(alignment, read_segments(alignment, "phseg"), phone_set)
-        sound = file.parents[2] / "wav" / file.parent.name / (file.stem + ".wav")
+        sound = sentences / "wav" / dialog / f"{file.stem}.wav"
         if sound.is_file():
             segments = with_apexes(segments, *read_wave(sound))
         times, markers = read_markers(file)
@@ -220,11 +207,9 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
         try:
             mouth = item.markers.copy()
             mouth[:, : len(MOUTH)] = bridge_gaps(item.times, mouth[:, : len(MOUTH)])
-            faps = markers_to_faps(mouth, neutral)
+            episodes.append(Episode(item.path.stem, item.times, markers_to_faps(mouth, neutral), item.segments))
         except ValueError as error:
             refused.append(DataError(item.path, None, str(error)))
-            continue
-        episodes.append(Episode(item.path.stem, item.times, faps, item.segments))
     return episodes
 
 
@@ -235,12 +220,8 @@ def _is_listener(file: Path) -> bool:
 
 def _median(markers: np.ndarray) -> np.ndarray:
     """(M, 3) median over the frames where each marker is present; NaN for markers that never are."""
-    result = np.full(markers.shape[1:], np.nan)
-    for number in range(markers.shape[1]):
-        present = markers[np.isfinite(markers[:, number]).all(axis=1), number]
-        if len(present):
-            result[number] = np.median(present, axis=0)
-    return result
+    present = [item[np.isfinite(item).all(axis=1)] for item in np.moveaxis(markers, 1, 0)]
+    return np.array([np.median(item, axis=0) if len(item) else np.full(3, np.nan) for item in present])
 
 
 def align_head(markers: np.ndarray, reference: np.ndarray, weights: np.ndarray, scale: bool = False) -> np.ndarray:

@@ -81,19 +81,13 @@ def find_first(tables: Iterable[Mapping[str, str]], label: str) -> Optional[str]
     if len(label) > limits.LABEL or len(label.encode("utf-8", "replace")) > limits.LABEL:
         return None
     bare = without_marks(label) or label
-    for names in tables:
-        known = names.get(label, names.get(bare))
-        if known is not None:
-            return known
-    return None
+    known = (names.get(label, names.get(bare)) for names in tables)
+    return next((meaning for meaning in known if meaning is not None), None)
 
 
 def longest_of(names: Mapping[str, str]) -> Dict[str, int]:
     """How long the names are that begin with a character, at most: what :func:`nearest` compares."""
-    longest: Dict[str, int] = {}
-    for name in names:
-        longest[name[0]] = max(len(name), longest.get(name[0], 0))
-    return longest
+    return {name[0]: len(name) for name in sorted(names, key=len)}
 
 
 def nearest(names: Mapping[str, str], longest: Mapping[str, int], label: str, silence: str, neutral: str) -> str:

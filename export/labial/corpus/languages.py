@@ -15,7 +15,7 @@ import shutil
 import subprocess
 import unicodedata
 from functools import cache
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, List, Optional, Sequence, Set, Tuple
 
 from labial.core import espeak
 from labial.core.words import read
@@ -81,18 +81,18 @@ def pronounced(words: Sequence[str], language: str) -> List[Optional[List[str]]]
     language = "yue" if _CANTONESE.fullmatch(language) else language
     is_pinyin = bool(_CHINESE.fullmatch(language))
     given = [signs.worded(unicodedata.normalize("NFC", word), "cmn" if is_pinyin else language) for word in words]
+    found: List[List[str]]
     if is_pinyin:
         found = [_by_pinyin(word) for word in given]
+    elif _JAPANESE.fullmatch(language):
+        found = [_DEVOICED.sub("", " ".join(phonemes)).split()
+                 for phonemes in _by_espeak([_kana(word) for word in given], language)]
     else:
-        if _JAPANESE.fullmatch(language):
-            given = [_kana(word) for word in given]
-        found = [phonemes or None for phonemes in _by_espeak(given, language)]
-        if _JAPANESE.fullmatch(language):
-            found = [phonemes and _DEVOICED.sub("", " ".join(phonemes)).split() for phonemes in found]
+        found = _by_espeak(given, language)
     for word, phonemes in zip(words, found):
-        if phonemes is None:
+        if not phonemes:
             _say_unspeakable(word, language)
-    return found
+    return [phonemes or None for phonemes in found]
 
 
 def is_chinese(language: str) -> bool:
@@ -116,7 +116,7 @@ def speakable(text: str, voice: str) -> Tuple[str, str]:
     return text, voice
 
 
-_unspeakable: Dict[str, None] = {}
+_unspeakable: Set[str] = set()
 
 
 def _say_unspeakable(word: str, language: str) -> None:
@@ -124,7 +124,7 @@ def _say_unspeakable(word: str, language: str) -> None:
     key = f"{language} {word}"
     if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
         return
-    _unspeakable[key] = None
+    _unspeakable.add(key)
     is_kanji = _JAPANESE.fullmatch(language) and HAN.search(word)
     hint = f"; kanji need fugashi: {pip('japanese')}" if is_kanji else ""
     shown = "the lips move for its time alone" if re.search(r"[^\W_]", word) else "it is silent"
@@ -143,16 +143,13 @@ def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
     found = _spoken([*words, *(f"{word} ta" for word in single)], language)
     for word, phonemes in zip(single, found[len(words) :]):
         if "T" in phonemes[1:]:
-            end = len(phonemes) - 1 - phonemes[::-1].index("T")
-            found[words.index(word)] = phonemes[:end]
+            found[words.index(word)] = phonemes[: -1 - phonemes[::-1].index("T")]
     del found[len(words) :]
     for first in range(0, len(words), _SENTENCE):
         places = [place for place in range(first, min(first + _SENTENCE, len(words))) if _WORD.fullmatch(words[place])]
         part = [words[place] for place in places]
         said = _spoken([" ".join(part)], language, " ")
-        if len(part) < 2 or len(said) != len(part):
-            continue
-        for place, phonemes in zip(places, said):
+        for place, phonemes in zip(places, said) if len(said) == len(part) > 1 else ():
             if difflib.SequenceMatcher(None, found[place], phonemes, autojunk=False).ratio() >= _ALIKE:
                 found[place] = phonemes
     return found
@@ -225,24 +222,15 @@ def _with_vowels(phonemes: Sequence[str]) -> List[str]:
         is_open = bool(result) and result[-1] in _VOWELS
         run = next((n for n, item in enumerate(phonemes[place:]) if item in _VOWELS), len(phonemes) - place)
         ends = place + run == len(phonemes)
-        if run == 0:
-            result.append(phonemes[place])
-            place += 1
-        elif is_open and run >= 2 and not (ends and run == 2):
-            result.append(phonemes[place])  # closes the syllable before
-            place += 1
-            result.append(phonemes[place])
-            if run > 2 or ends:
-                result.append("AE")
-            place += 1
-        elif is_open and ends:
-            result += phonemes[place:]
-            place = len(phonemes)
-        else:
-            result.append(phonemes[place])
-            if run > 1 or (ends and run == 1 and not result[:-1]):
-                result.append("AE")
-            place += 1
+        taken, lacks = 1, False
+        if is_open and run >= 2 and not (ends and run == 2):
+            taken, lacks = 2, run > 2 or ends  # the first one closes the syllable before
+        elif is_open and run and ends:
+            taken = run
+        elif run:
+            lacks = run > 1 or (ends and not result)
+        result += phonemes[place : place + taken] + ["AE"] * lacks
+        place += taken
     return result
 
 
@@ -269,7 +257,7 @@ def _spelt_out(found: re.Match[str]) -> str:
     return digits + ("点" + "".join(_DIGITS[int(digit)] for digit in part) if point else "")
 
 
-def _by_pinyin(word: str) -> Optional[List[str]]:
+def _by_pinyin(word: str) -> List[str]:
     """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
     English."""
     word = _NUMBER.sub(_spelt_out, _THOUSANDS.sub("", word))
@@ -278,7 +266,7 @@ def _by_pinyin(word: str) -> Optional[List[str]]:
     for part in re.findall(r"[^\W\d_]+", _without_tones(text)):
         syllables = _syllables(part.lower())
         found += syllables if syllables is not None else read(part).phonemes
-    return found or None
+    return found
 
 
 def _pinyin(word: str) -> str:
@@ -310,21 +298,16 @@ def _syllables(part: str) -> Optional[List[str]]:
     place = 0
     while place < len(part):
         rest = part[place:]
-        written = next(((a, b) for a, b in _WRITTEN if rest.startswith(a)), ("", ""))
-        match = _SYLLABLE.match(written[1] + rest[len(written[0]) :])
-        if not match:
+        written, meant = next(((a, b) for a, b in _WRITTEN if rest.startswith(a)), ("", ""))
+        match = _SYLLABLE.match(meant + rest[len(written) :])
+        place += match.end() - len(meant) + len(written) if match else 0
+        if not match or (part[place:] and not re.match(r"[a-zü]", part[place])):
             return None
         initial, final = match.groups()
-        size = match.end() - len(written[1]) + len(written[0])
-        if part[place + size :] and not re.match(r"[a-zü]", part[place + size]):
-            return None
         if final[0] == "u" and initial in ("j", "q", "x"):
             final = "ü" + final[1:]
-        vowels = _FINALS[final]
-        if final == "i" and initial in ("zh", "ch", "sh", "r", "z", "c", "s"):
-            vowels = "IH"
-        found += [*_INITIALS[initial].split(), *vowels.split()]
-        place += size
+        is_buzzed = final == "i" and initial in ("zh", "ch", "sh", "r", "z", "c", "s")
+        found += [*_INITIALS[initial].split(), *("IH" if is_buzzed else _FINALS[final]).split()]
     return found
 
 

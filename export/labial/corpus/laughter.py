@@ -11,11 +11,9 @@ No recording of laughter's lip motion with its phonemes is public, so this progr
   the corners stay drawn back and up through the bout while the jaw quivers with the pulses.
 * **Amplitudes are design choices:** every number of FAP units below, the speed of the smile, the asymmetry, the noise.
   So are the shares of the phonemes and the durations of "o", "grunt" and of the pauses between trains.
-* **Loudness is a design choice, too.** A bout has an intensity from 0, a hum behind nearly closed lips, to 1, a mouth
-  as wide open as in loud speech. A pulse's loudness is that, falling along the train and from train to train. The jaw
-  is proportional to it, the lips part over its first third, and the smile follows slowly. A model sees it as *grades*:
-  the phonemes that carry a bout's amplitude are labelled soft, plain or loud; between two grades the label is random,
-  with the probability given by the loudness.
+* **Loudness is a design choice, too** (docs/laughing.md). The jaw is proportional to a pulse's, the lips part over its
+  first third, and the smile follows slowly. A model sees it as the *grades* of the phonemes that carry a bout's
+  amplitude; between two grades the label is random, with the probability given by the loudness.
 
 The bottom lip follows the jaw, the top lip rises a little with the smile, and both meet when the lips are closed.
 """
@@ -52,18 +50,9 @@ TRAIN_MEDIAN, TRAIN_SPREAD, TRAIN_LONGEST = 3.0, 0.6, 17
 SHORTEST = 20
 #: A phoneme's mouth at full loudness: jaw (of `_JAW`), lips apart (0 closed, 1 free), rounding.
 GESTURES = {
-    "silence": (0.16, 0.60, 0.0),
-    "ne": (0.04, 0.15, 0.0),
-    "nasal": (0.10, 0.05, 0.0),
-    "click": (0.22, 0.60, 0.1),
-    "plosive": (0.16, 0.50, 0.0),
-    "fricative": (0.36, 0.90, 0.0),
-    "ic": (0.90, 1.00, -0.2),
-    "e": (0.94, 1.00, 0.0),
-    "o": (0.92, 1.00, 1.0),
-    "grunt": (0.20, 0.45, 0.1),
-    "cackle": (1.50, 1.00, 0.0),
-    "a": (1.00, 1.00, 0.0),
+    "silence": (0.16, 0.60, 0.0), "ne": (0.04, 0.15, 0.0), "nasal": (0.10, 0.05, 0.0), "click": (0.22, 0.60, 0.1),
+    "plosive": (0.16, 0.50, 0.0), "fricative": (0.36, 0.90, 0.0), "ic": (0.90, 1.00, -0.2), "e": (0.94, 1.00, 0.0),
+    "o": (0.92, 1.00, 1.0), "grunt": (0.20, 0.45, 0.1), "cackle": (1.50, 1.00, 0.0), "a": (1.00, 1.00, 0.0),
 }
 _JAW = 600.0  # FAP 3 of the widest opening: about 18 mm of an adult's face
 #: The jaw's opening and the smile of the softest laugh, a hum; the loudness from which the lips part freely.
@@ -101,9 +90,9 @@ def generate(out_dir: PathLike, episodes: int = EPISODES, seed: int = 0) -> None
     with folder(path) as made:
         for number in range(episodes):
             phonemes, intensity = _bout(random)
-            _write(made / f"laugh{number:04d}.csv", _csv(_motion(random, phonemes, intensity)))
-            _write(made / f"laugh{number:04d}.lab", _lab(random, phonemes))
-        _write(made / "README.md", _README.format(episodes=episodes, seed=seed, fps=FPS))
+            (made / f"laugh{number:04d}.csv").write_bytes(_csv(_motion(random, phonemes, intensity)).encode())
+            (made / f"laugh{number:04d}.lab").write_bytes(_lab(random, phonemes).encode())
+        (made / "README.md").write_bytes(_README.format(episodes=episodes, seed=seed, fps=FPS).encode())
 
 
 def is_synthetic(path: PathLike) -> bool:
@@ -119,29 +108,30 @@ def _bout(random: np.random.Generator) -> Tuple[List[_Phoneme], float]:
     """A bout's phonemes and its intensity, 0 to 1."""
     intensity = 0.5 - 0.5 * math.cos(math.pi * random.random())  # faint and hearty laughs more often than others
     bout: List[_Phoneme] = [("silence", int(random.uniform(200, 500)), 0.0)]
-    for label, share in ONSETS.items():
-        if random.random() < share:
-            bout.append((label, _duration(random, label), 0.5 * intensity))
-            break
-    trains = 2 + int(random.binomial(4, intensity))
-    for train in range(trains):
+
+    def add(label: str, loudness: float) -> None:
+        bout.append((label, _duration(random, label), loudness))
+
+    onset = next((label for label, share in ONSETS.items() if random.random() < share), None)
+    if onset:
+        add(onset, 0.5 * intensity)
+    for train in range(2 + int(random.binomial(4, intensity))):
         loudness = intensity * TRAIN_DECAY**train
         bout += _train(random, loudness)
         if random.random() < INHALED:  # air runs out and is drawn in again
-            bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
+            add("silence", 0.25 * loudness)
             if random.random() < CLICKED:
-                bout.append(("click", _duration(random, "click"), 0.6 * loudness))
-            inhaled = "ne" if random.random() < BY_NOSE else "fricative"
-            bout.append((inhaled, _duration(random, inhaled), INHALED_LOUDNESS * loudness))
+                add("click", 0.6 * loudness)
+            add("ne" if random.random() < BY_NOSE else "fricative", INHALED_LOUDNESS * loudness)
         if random.random() < GRUNTED:
-            bout.append(("grunt", _duration(random, "grunt"), 0.5 * loudness))
+            add("grunt", 0.5 * loudness)
         if random.random() < SILENT:
-            bout.append(("silence", _duration(random, "silence"), 0.25 * loudness))
+            add("silence", 0.25 * loudness)
         if random.random() < RESTED:
             longest = 5000 if random.random() < 0.1 else 900
             bout.append(("silence", int(random.uniform(0.5, 1.0) * longest), 0.0))
     if random.random() < 0.5:
-        bout.append(("ne", _duration(random, "ne"), 0.3 * intensity))
+        add("ne", 0.3 * intensity)
     bout.append(("silence", int(random.uniform(700, 1600)), 0.0))
     return [(_graded(random, label, loudness), length, loudness) for label, length, loudness in bout], intensity
 
@@ -211,30 +201,21 @@ def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: fl
     aperture = seal * (1.08 * jaw + 60 * smile)
     rounding = _smooth(rounding, 45)
     raised = 0.16 * aperture + 42 * smile
-    frames = np.empty((count, CHANNELS))
-    channel = {number: index for index, number in enumerate(FAP_NUMBERS)}
-    frames[:, channel[3]] = jaw
-    frames[:, channel[16]] = -34 * smile - 0.10 * jaw + 40 * rounding
-    frames[:, channel[17]] = -48 * smile + 42 * rounding
-    frames[:, channel[51]] = -raised
-    frames[:, channel[52]] = raised - aperture
+    faps = {3: jaw, 16: -34 * smile - 0.10 * jaw + 40 * rounding, 17: -48 * smile + 42 * rounding, 51: -raised,
+            52: raised - aperture}
     corner_out = 150 * smile - 0.05 * jaw - 34 * rounding
     corner_up = 195 * smile - 0.16 * jaw
     lean = float(random.normal(0, 0.04))  # one side of the face smiles a little more
-    for left, right, centre, smiling in ((55, 56, -0.80 * raised, -30), (57, 58, 0.78 * (raised - aperture), 34)):
-        frames[:, channel[left]] = centre + smiling * smile * (1 + lean)
-        frames[:, channel[right]] = centre + smiling * smile * (1 - lean)
-    for left, right, value in ((53, 54, corner_out), (59, 60, corner_up)):
-        frames[:, channel[left]], frames[:, channel[right]] = value * (1 + lean), value * (1 - lean)
-    frames = _sampled(frames, total)
+    for side, more in enumerate((1 + lean, 1 - lean)):
+        faps[53 + side], faps[59 + side] = corner_out * more, corner_up * more
+        faps[55 + side] = -0.80 * raised + -30 * smile * more
+        faps[57 + side] = 0.78 * (raised - aperture) + 34 * smile * more
+    frames = np.stack([faps[number] for number in FAP_NUMBERS], axis=1)
+    # Samples at the centres of the frames, from those every `_STEP` ms.
+    moments = (np.arange(max(round(total * FPS / 1000), 1)) + 0.5) * 1000 / FPS
+    frames = np.stack([np.interp(moments, np.arange(count) * _STEP, item) for item in frames.T], axis=1)
     noise = random.normal(0, 1.0, (len(frames) + 2, CHANNELS))  # like a tracker's: small, a little smoothed
     return frames + 0.5 * noise[1:-1] + 0.25 * (noise[:-2] + noise[2:])
-
-
-def _sampled(frames: np.ndarray, milliseconds: int) -> np.ndarray:
-    """(T, 13) at the centres of T = milliseconds * FPS / 1000 frames, from samples every `_STEP` ms."""
-    moments = (np.arange(max(round(milliseconds * FPS / 1000), 1)) + 0.5) * 1000 / FPS
-    return np.stack([np.interp(moments, np.arange(len(frames)) * _STEP, item) for item in frames.T], axis=1)
 
 
 def _smooth(signal: np.ndarray, sigma: float) -> np.ndarray:
@@ -270,10 +251,6 @@ def _lab(random: np.random.Generator, phonemes: List[_Phoneme]) -> str:
         lines.append(f"{begin / 1000:.3f} {(begin + milliseconds) / 1000:.3f} {label} {apex / 1000:.3f}")
         begin += milliseconds
     return "\n".join(lines) + "\n"
-
-
-def _write(path: Path, text: str) -> None:
-    path.write_bytes(text.encode("utf-8"))
 
 
 #: First line of the README beside the episodes, by which the corpus is recognised.

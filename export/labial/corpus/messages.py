@@ -43,12 +43,8 @@ class Stats(NamedTuple):
 
 
 class Messages:
-    """Reads the messages of one service.
-
-    Args:
-        form: the format, a name of `SERVICES`; None to recognise it by the first message with timings. labels: the set
-        of phoneme labels where the format does not tell it.
-    """
+    """Reads the messages of one service: of the format `form`, a name of `SERVICES`, or of that which the first message
+    with timings tells. `labels` is the set of phoneme labels where the format does not tell it."""
 
     def __init__(self, form: Optional[str] = None, labels: str = AUTO) -> None:
         if form is not None and form not in SERVICES:
@@ -86,29 +82,35 @@ class Messages:
 
     def expect_timings(self) -> None:
         """Warns, once, if there were messages and none of them told timings."""
-        if self.stats.messages and not self.stats.told and not self._has_warned:
-            self._has_warned = True
-            self._complain()
+        if not self.stats.messages or self.stats.told or self._has_warned:
+            return
+        self._has_warned = True
+        service = SERVICES.get(self._form or self._silent or "")
+        if service is None:
+            problem = f"none is of a known service ({', '.join(SERVICES)})"
+        else:
+            problem = f"{service.title} has to be asked for them" + (f": {service.advice}" if service.advice else "")
+        _logger.warning("%d messages told no timings: %s", self.stats.messages, problem)
 
     def _entries(self, message: Any, name: str, odd: Odd) -> List[Entry]:
         """The objects of a message."""
         lines: List[Tuple[Optional[int], int, Any]]
         if isinstance(message, (bytes, bytearray, memoryview)):
             message = bytes(message)
-            if message[:64].lstrip()[:1] not in (b"{", b"[", b"d", b"e", b"i", b"r", b":"):
+            first = message[:64].lstrip()[:1]
+            if first not in (b"{", b"[", b"d", b"e", b"i", b"r", b":"):
                 return []
             try:
                 message = message.decode("utf-8")
             except UnicodeDecodeError:
-                if message[:64].lstrip()[:1] not in (b"{", b"["):
+                if first not in (b"{", b"["):
                     return []
                 raise DataError(name, None, "not UTF-8") from None
         if isinstance(message, str):
             lines = documents(name, message, MESSAGE_DOCUMENTS, odd.count_of)
-        elif is_list(message) and fields_of(message) is None:
-            lines = [(None, number, item) for number, item in enumerate(message, 1)]
         else:
-            lines = [(None, 1, message)]
+            items = message if is_list(message) and fields_of(message) is None else [message]
+            lines = [(None, number, item) for number, item in enumerate(items, 1)]
         if len(lines) > MESSAGE_DOCUMENTS:
             raise DataError(name, None, f"{len(lines)} objects, more than the {MESSAGE_DOCUMENTS} that are read")
         found = []
@@ -174,11 +176,3 @@ class Messages:
         _logger.warning("message %d seems to be of %s and is not read, since earlier ones are of %s: name the format, "
                         "or use a voice for each service", self.stats.messages, SERVICES[other].title,
                         SERVICES[form].title)
-
-    def _complain(self) -> None:
-        service = SERVICES.get(self._form or self._silent or "")
-        if service is None:
-            problem = f"none is of a known service ({', '.join(SERVICES)})"
-        else:
-            problem = f"{service.title} has to be asked for them" + (f": {service.advice}" if service.advice else "")
-        _logger.warning("%d messages told no timings: %s", self.stats.messages, problem)

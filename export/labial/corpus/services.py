@@ -86,18 +86,9 @@ class _Field:
             self.options.append((steps, float(divisor or 1) if is_number else 0.0,
                                  "" if is_number else plain_name(divisor)))
         self.name = text.lstrip("?=").split("|")[0].split("/")[0]
-        # Most fields are looked up directly.
-        self._simple = [steps[0][0] for steps, _, _ in self.options] if all(
-            len(steps) == 1 and steps[0][1:] == (0, False) for steps, _, _ in self.options) else None
 
     def found(self, entry: Entry) -> Tuple[Any, int]:
         """The value of the first alternative that exists, and its number; `_MISSING` without one."""
-        if self._simple is not None:
-            plain = entry.plain
-            for number, name in enumerate(self._simple):
-                if name in plain:
-                    return plain[name], number
-            return _MISSING, 0
         for number, (steps, _, _) in enumerate(self.options):
             value = _descended(entry, steps)
             if value is not _MISSING:
@@ -120,7 +111,6 @@ class _Column(NamedTuple):
     divisor: float
 
     def time(self, number: int) -> Optional[float]:
-        """A time in seconds; None where it is no number from 0 on."""
         return _number(self.values[number], self.divisor)
 
 
@@ -133,24 +123,22 @@ def _step(name: str) -> Tuple[str, int, bool]:
 def _descended(entry: Entry, steps: Sequence[Tuple[str, int, bool]]) -> Any:
     """The value at the end of a way, of lists that of the first item."""
     value: Any = _MISSING
-    inner: Optional[Entry] = entry
-    for name, depth, exact in steps:
+    for place, (name, depth, exact) in enumerate(steps):
+        inner = entry.inner(value) if place else entry
         if inner is None:
             return _MISSING
-        value = inner.fields.get(name, _MISSING) if exact else inner.plain.get(name, _MISSING)
+        value = (inner.fields if exact else inner.plain).get(name, _MISSING)
         for _ in range(depth):
             value = value[0] if is_list(value) and value else _MISSING
-        inner = None if value is _MISSING else entry.inner(value)
     return value
 
 
 def _number(value: Any, divisor: float) -> Optional[float]:
     """A value in seconds; None for what is no finite number from 0 on. A timedelta has its own unit."""
-    if type(value) not in (int, float):
-        if isinstance(value, timedelta):
-            value, divisor = value.total_seconds(), 1.0
-        elif isinstance(value, bool) or not isinstance(value, Real):
-            return None
+    if isinstance(value, timedelta):
+        value, divisor = value.total_seconds(), 1.0
+    elif isinstance(value, bool) or not isinstance(value, Real):
+        return None
     try:
         number = float(value) / divisor
     except (OverflowError, ZeroDivisionError):
@@ -379,11 +367,6 @@ class Service:
         self._tells = [_Tell(tell) for tell in row["tells"]]
 
     @property
-    def begins(self) -> List[str]:
-        """The names by one of which an object of it can be told."""
-        return [plain_name(steps[0][0]) for fields in self._marks for steps, _, _ in fields[0].options]
-
-    @property
     def is_bare(self) -> bool:
         """Whether its messages are nothing but timings: others may have fields of the same names."""
         return all(tell.places == [[]] for tell in self._tells)
@@ -410,15 +393,8 @@ class Service:
 
 #: Every service by its name for --from, in the order of detection.
 SERVICES: Dict[str, Service] = {name: Service(row) for name, row in TABLE["services"].items()}
-#: By the first name of a rule, the services that it may tell, by their numbers.
-_BEGINS: Dict[str, List[int]] = {}
-for _number_of, _service in enumerate(SERVICES.values()):
-    for _name in _service.begins:
-        _BEGINS.setdefault(_name, []).append(_number_of)
-_ORDER = list(SERVICES)
 
 
 def service_of(item: Entry) -> Optional[str]:
     """The service that an object is of, by its fields; None for others."""
-    found = sorted({number for name in _BEGINS.keys() & item.plain.keys() for number in _BEGINS[name]})
-    return next((_ORDER[number] for number in found if SERVICES[_ORDER[number]].told(item)), None)
+    return next((name for name, service in SERVICES.items() if service.told(item)), None)

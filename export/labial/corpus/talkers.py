@@ -4,17 +4,7 @@ Faces differ in the rest position and the range of their channels, and so do rec
 recording's motion is brought to the first corpus's mean and standard deviation, channel by channel, both measured
 outside silence. Where a corpus says that a channel's ``scale`` is its own, the standard deviation is that corpus's.
 
-``corpus.toml`` may contain the following, all of it optional::
-
-    weight = 3                          # how much a frame counts beside those of a corpus without this key; where
-                                        # talkers are random effects, how much each of its talkers counts
-    leave_out = ["fap16", "fap17"]      # channels that are not learnt from
-    scale = ["fap53", "fap54"]          # channels whose standard deviation all corpora are brought to
-    silences = false                    # nor are the silences
-
-    [talkers]                           # who speaks in which episodes: names, or patterns with * and ?;
-    anna = ["anna_*"]                   # each pattern is one recording, with a mean and a scale of its own
-    bert = ["bert_studio_*", "bert_street_*"]
+docs/record.md says what ``corpus.toml`` may contain.
 """
 
 from __future__ import annotations
@@ -50,8 +40,10 @@ def with_sources(folder: PathLike, episodes: Sequence[Episode]) -> List[Episode]
     weight = table.number("weight") if "weight" in table.content else 1.0
     if not 0.0 < weight <= LARGEST_WEIGHT:
         raise table.error("weight", f"{weight:g} is not above 0 and at most {LARGEST_WEIGHT:g}")
-    common = Source(where.name, str(where), weight, _left_out(table), table.flag("silences", True),
-                    _channels(table, "scale"))
+    left_out = _channels(table, "leave_out")
+    if len(left_out) == len(FAP_COLUMNS):
+        raise table.error("leave_out", "nothing is left to learn from")
+    common = Source(where.name, str(where), weight, left_out, table.flag("silences", True), _channels(table, "scale"))
     if "talkers" not in table.content:
         return [replace(item, source=common) for item in episodes]
     told = _talkers(table, [item.name for item in episodes])
@@ -67,13 +59,6 @@ def _channels(table: Table, key: str) -> FrozenSet[int]:
         if name not in FAP_COLUMNS:
             raise table.error(key, f"no channel is called {name!r}{meant(str(name), FAP_COLUMNS)}")
     return frozenset(FAP_COLUMNS.index(name) for name in given)
-
-
-def _left_out(table: Table) -> FrozenSet[int]:
-    found = _channels(table, "leave_out")
-    if len(found) == len(FAP_COLUMNS):
-        raise table.error("leave_out", "nothing is left to learn from")
-    return found
 
 
 def _talkers(table: Table, names: Iterable[str]) -> Dict[str, Tuple[str, str]]:
@@ -175,14 +160,12 @@ def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviat
 def _brought(item: Episode, own: Tuple[np.ndarray, np.ndarray], mean: np.ndarray, deviation: np.ndarray) -> Episode:
     """The episode with its recording's mean and standard deviation, `own`, brought to others."""
     own_mean, own_deviation = own
-    moves = own_deviation > 1e-9
-    scale = np.where(moves, deviation / np.where(moves, own_deviation, 1.0), 1.0)
-    source = replace(item.source, stretch=tuple(float(factor) for factor in scale))
+    scale = np.divide(deviation, own_deviation, out=np.ones(len(own_mean)), where=own_deviation > 1e-9)
+    source = replace(item.source, stretch=tuple(scale.tolist()))
     return replace(item, frames=mean + (item.frames - own_mean) * scale, source=source)
 
 
 def _moments(frames: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """(13,) mean and standard deviation of (T, 13) frames; 0 without frames."""
-    if not len(frames):
-        return np.zeros(frames.shape[1]), np.zeros(frames.shape[1])
+    frames = frames if len(frames) else np.zeros((1, frames.shape[1]))
     return frames.mean(axis=0), frames.std(axis=0)

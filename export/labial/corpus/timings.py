@@ -2,8 +2,7 @@
 
 Lines and TextGrids are parsed by the library. Every reader checks that times are finite and from 0 on, that no segment
 ends before it begins and that segments are in order and do not overlap by more than `TOLERANCE`; anything else is a
-DataError with file and line. Labels stay as they
-are in the file until :func:`phoneme_segments` maps them to a phone set and fills the gaps with its silence.
+DataError with file and line. Labels stay as they are until :func:`phoneme_segments` maps them.
 """
 
 from __future__ import annotations
@@ -35,10 +34,6 @@ _LONGEST_SOUND = 10.0
 #: A TextGrid's interval tier and its name.
 _TIER = re.compile(r'"IntervalTier"[^"]*"((?:[^"]|"")*)"')
 _NO_LAUGH = "one model alone cannot laugh, so laughs are silence; labial-say and labial.render() laugh"
-
-
-class Empty(DataError):
-    """There are no segments."""
 
 
 @dataclass(frozen=True)
@@ -99,8 +94,8 @@ def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_se
     for place, item in enumerate(segments, 1):
         laugh = laugh_of(item.label)
         label = laugh if laughs and laugh else meaning(item, phone_set, labels)
+        where = "" if item.line else f"interval {place}: "
         if label is None:
-            where = f"interval {place}: " if item.line is None else ""
             tier = f" (tier {item.tier!r})" if item.tier else ""
             problem = DataError(path, item.line, f"{where}no {phone_set.kind} phoneme is called {item.label!r}{tier}")
             if strict:
@@ -115,7 +110,6 @@ def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_se
         end = max(item.end, previous)
         if end - previous > _LONGEST_PHONEME:
             if label != phone_set.silence:
-                where = f"interval {place}: " if item.line is None else ""
                 raise DataError(path, item.line, f"{where}{item.label!r} lasts {end - previous:g} s, more than the "
                                 f"{_LONGEST_PHONEME} s that a phoneme may")
             previous = _silence(result, previous, end - _LONGEST_PHONEME, phone_set)
@@ -126,7 +120,12 @@ def phoneme_segments(path: PathLike, segments: Sequence[SourceSegment], phone_se
         apex = None if item.apex is None else min(max(item.apex, previous), end)
         result.append(Segment(previous, end, label, apex, item.word))
         previous = end
-    _expect_seconds(path, [item.duration for item in result if item.label != phone_set.silence])
+    durations = [item.duration for item in result if item.label != phone_set.silence]
+    # The length of the last sound may be a guess, as services report only when it begins.
+    if durations and 1000 * max(durations[:-1] or durations) < SHORTEST:
+        what = "every sound but the last" if len(durations) > 1 else "every sound"
+        text = f"{what} is shorter than {SHORTEST:g} ms: is the unit of time right?"
+        warnings.warn(str(DataError(path, None, text)), stacklevel=2)
     return tuple(result)
 
 
@@ -134,15 +133,6 @@ def laugh_of(label: str) -> Optional[str]:
     """A laugh's label without blanks; None for a label that is not a laugh's."""
     found = LAUGH.fullmatch(label)
     return found and (f"<laugh:{found[1]}>" if found[1] else "<laugh>")
-
-
-def _expect_seconds(path: PathLike, durations: Sequence[float]) -> None:
-    """Warns the caller's caller where sounds are so short that their times must be in another unit. The length of the
-    last one may be a guess, as services report only when it begins."""
-    if durations and 1000 * max(durations[:-1] or durations) < SHORTEST:
-        what = "every sound but the last" if len(durations) > 1 else "every sound"
-        text = f"{what} is shorter than {SHORTEST:g} ms: is the unit of time right?"
-        warnings.warn(str(DataError(path, None, text)), stacklevel=3)
 
 
 def _silence(result: List[Segment], start: float, end: float, phone_set: PhoneSet) -> float:
@@ -163,22 +153,22 @@ def lab_of(segments: Iterable[Segment]) -> str:
 def checked(path: PathLike, segments: List[SourceSegment]) -> List[SourceSegment]:
     """`segments`, or a DataError where times are late, turned round, overlap, or there are none."""
     if not segments:
-        raise Empty(path, None, "no segments")
+        raise DataError(path, None, "no segments")
     previous = -math.inf
     for place, item in enumerate(segments, 1):
-        where = f"interval {place}: " if item.line is None else ""
         times = [item.start, item.end] + ([] if item.apex is None else [item.apex])
+        problem = ""
         if min(times) < 0:
-            raise DataError(path, item.line, f"{where}{min(times):g} s is before the beginning, 0")
-        if max(times) > LONGEST:
-            raise DataError(path, item.line, f"{where}{max(times):g} s is more than a day; are these seconds?")
-        if item.end < item.start:
-            raise DataError(path, item.line, f"{where}the segment ends at {item.end:g} s, "
-                            f"before its start {item.start:g} s")
-        if item.start < previous - TOLERANCE:
-            raise DataError(path, item.line, f"{where}the segment starts at {item.start:g} s, "
-                            f"before the end of the one before, {previous:g} s")
-        if item.apex is not None and not item.start - TOLERANCE <= item.apex <= item.end + TOLERANCE:
-            raise DataError(path, item.line, f"{where}the apex {item.apex:g} s is outside its segment")
+            problem = f"{min(times):g} s is before the beginning, 0"
+        elif max(times) > LONGEST:
+            problem = f"{max(times):g} s is more than a day; are these seconds?"
+        elif item.end < item.start:
+            problem = f"the segment ends at {item.end:g} s, before its start {item.start:g} s"
+        elif item.start < previous - TOLERANCE:
+            problem = f"the segment starts at {item.start:g} s, before the end of the one before, {previous:g} s"
+        elif item.apex is not None and not item.start - TOLERANCE <= item.apex <= item.end + TOLERANCE:
+            problem = f"the apex {item.apex:g} s is outside its segment"
+        if problem:
+            raise DataError(path, item.line, problem if item.line else f"interval {place}: {problem}")
         previous = max(previous, item.end)
     return segments

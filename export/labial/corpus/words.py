@@ -10,6 +10,7 @@ from __future__ import annotations
 import logging
 import re
 import unicodedata
+from itertools import accumulate
 from typing import Container, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple, Union
 
 from labial.core.words import CHARACTERS_MAX, PHONEMES_MAX, OwnWords, Spoken, WordStream, read, read_words
@@ -120,7 +121,7 @@ def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: 
             mark = _TAGS.get(character, "")
             closing = closing or (mark if last.get(mark, -1) >= number else "")
             is_read = not closing and not _ends(text, character)
-            if text and (not is_read or _begins(text, character) or is_each and _are_apart(text[-1], character)):
+            if text and (not is_read or _begins(text, character) or is_each and HAN.search(text[-1] + character)):
                 words.append(Word(text, start, times[-1], tuple(times[1:])))
                 text = ""
             closing = "" if character == closing else closing
@@ -143,7 +144,7 @@ def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> Lis
         length = 0.0 if end is None else end - start
         for place, character in enumerate(text):
             begin, until = start + length * place / len(text), start + length * (place + 1) / len(text)
-            if _are_apart(before, character):
+            if HAN.search(before + character):
                 found.append((" ", begin, begin))
             found.append((character, begin, until))
             before = character
@@ -159,11 +160,8 @@ def _linked(items: Sequence[str], between: str) -> List[str]:
 
 def _cut(characters: Sequence[str], items: Sequence[str], gap: int) -> List[str]:
     """What has become of the characters of items, between which a gap is."""
-    place, found = 0, []
-    for item in items:
-        found.append("".join(characters[place : place + len(item)]))
-        place += len(item) + gap
-    return found
+    ends = accumulate(len(item) + gap for item in items)
+    return ["".join(characters[end - gap - len(item) : end - gap]) for item, end in zip(items, ends)]
 
 
 def _written(words: Sequence[str], language: str) -> List[str]:
@@ -199,10 +197,6 @@ def words_of(text: str) -> List[str]:
 def _whole(text: str) -> str:
     """A text as the library is given it: half surrogates have no UTF-8."""
     return text.encode("utf-8", "replace").decode("utf-8")
-
-
-def _are_apart(before: str, character: str) -> bool:
-    return bool(HAN.match(before) or HAN.match(character))
 
 
 def _ends(word: str, character: str) -> bool:
@@ -242,11 +236,10 @@ def known_words(texts: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[
         for word, phonemes in zip(asked, pronounced(asked, how.language)):
             if phonemes is not None or not re.search(r"[^\W_]", word):  # a sign that is not said is not English
                 known[word] = phonemes or ()
-    for word in known:
-        if len(known[word]) > PHONEMES_MAX:
-            _logger.warning("%.40r has %d phonemes: the lips move for the first %d", word, len(known[word]),
-                            PHONEMES_MAX)
-            known[word] = known[word][:PHONEMES_MAX]
+    for word, sounds in known.items():
+        if len(sounds) > PHONEMES_MAX:
+            _logger.warning("%.40r has %d phonemes: the lips move for the first %d", word, len(sounds), PHONEMES_MAX)
+            known[word] = sounds[:PHONEMES_MAX]
     return {**how.own, **longest_first(known)}
 
 
@@ -262,20 +255,10 @@ def stretches_of(texts: Iterable[str], known: Container[str], language: str) -> 
 
 def _stretches(text: str, language: str) -> List[str]:
     """The stretches of a text. Marks and joiners belong to the letter before them: without them Hindi falls apart."""
-    plain = "".join("x" if _is_mark(character) else character for character in text)
+    plain = "".join("x" if character > "\x7f" and (
+        unicodedata.category(character)[0] == "M" or character in "\u200c\u200d") else character for character in text)
     pattern = _STRETCH if language == ENGLISH else _SIGNED
     return [text[found.start() : found.end()] for found in pattern.finditer(plain)]
-
-
-def _is_mark(character: str) -> bool:
-    return character > "\x7f" and (unicodedata.category(character)[0] == "M" or character in "\u200c\u200d")
-
-
-def _spoken(words: Sequence[str], how: Pronunciation) -> List[str]:
-    """The phonemes of words one after the other."""
-    if how.language != ENGLISH:
-        return [phoneme for found in pronounced(words, how.language) for phoneme in found or ()]
-    return [phoneme for word in words for phoneme in read(word).phonemes]
 
 
 def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[str]]:
@@ -283,16 +266,18 @@ def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence
     with needs("numbers in words", "numbers"):
         import num2words  # noqa: F401
     known: Dict[str, Sequence[str]] = {}
+    is_english = how.language == ENGLISH
     for item in stretches:
-        text = item if how.language == ENGLISH else signs.worded(item, how.language)
+        text = item if is_english else signs.worded(item, how.language)
         digits = re.search(r"-?\d[\d.,]*", text)
-        if not digits or not signs.NUMBER.fullmatch(item) or not _NUMBER.fullmatch(digits[0]):
-            continue
-        if how.language != ENGLISH and _GROUPED.fullmatch(digits[0]):  # 3,500 or 3.500: espeak-ng knows which
+        if not digits or not signs.NUMBER.fullmatch(item) or not _NUMBER.fullmatch(digits[0]) or (
+                not is_english and _GROUPED.fullmatch(digits[0])):  # 3,500 or 3.500: espeak-ng knows which
             continue
         written = _written_out(digits[0], how.language)
         if written is not None:
-            known[item] = _spoken(f"{text[: digits.start()]} {written} {text[digits.end() :]}".split(), how)
+            words = f"{text[: digits.start()]} {written} {text[digits.end() :]}".split()
+            said = [read(word).phonemes for word in words] if is_english else pronounced(words, how.language)
+            known[item] = [phoneme for found in said for phoneme in found or ()]
     return known
 
 
@@ -307,17 +292,13 @@ def _written_out(digits: str, language: str) -> Optional[str]:
         value = float(plain) if "." in plain else int(plain)
         text = str(num2words(value, lang=language, to="year" if is_year else "cardinal"))
     except (NotImplementedError, OverflowError, ValueError):
-        _say_unwritten(digits, language)
+        if language not in _unwritten:
+            _unwritten.add(language)
+            _logger.warning("num2words cannot write %.40r in the language %r: such digits are read as without "
+                            "numbers=True", digits, language)
         return None
     return re.sub(r"\band\b", " ", text) if language == ENGLISH else text
 
 
+#: Languages in which a number was not written out, which is logged once.
 _unwritten: Set[str] = set()
-
-
-def _say_unwritten(digits: str, language: str) -> None:
-    """Logs that a number is not written out, once for each language."""
-    if language not in _unwritten:
-        _unwritten.add(language)
-        _logger.warning("num2words cannot write %.40r in the language %r: such digits are read as without numbers=True",
-                        digits, language)

@@ -91,9 +91,9 @@ def distorted(samples: np.ndarray, distortion: Distortion, random: np.random.Gen
     if distortion.clip > 0:
         sound = clipped(sound, distortion.clip)
     if distortion.companded:
-        sound = companded(sound / max(float(np.abs(sound).max(initial=0.0)), 1e-9))
+        sound = companded(sound / max(_peak(sound), 1e-9))
     if distortion.codec:
-        sound = coded(sound / max(float(np.abs(sound).max(initial=0.0)), 1e-9), *CODECS[distortion.codec])
+        sound = coded(sound / max(_peak(sound), 1e-9), *CODECS[distortion.codec])
     return as_integers(sound, distortion.peak, distortion.offset)
 
 
@@ -102,9 +102,13 @@ def rms(sound: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.square(sound)))) if len(sound) else 0.0
 
 
+def _peak(sound: np.ndarray) -> float:
+    return float(np.abs(sound).max(initial=0.0))
+
+
 def as_integers(sound: np.ndarray, peak: float, offset: float = 0.0) -> np.ndarray:
     """int16 of a sound whose peak becomes `peak` dB of full scale, with `offset`, relative to the peak, added."""
-    most = float(np.abs(sound).max(initial=0.0))
+    most = _peak(sound)
     gain = 32767.0 * 10 ** (peak / 20) / most if most > 0 else 0.0
     scaled = sound * gain + 32767.0 * 10 ** (peak / 20) * offset
     return np.clip(np.round(scaled), -32768, 32767).astype(np.int16)

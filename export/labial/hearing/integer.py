@@ -10,25 +10,9 @@ from typing import NamedTuple, Tuple
 
 import numpy as np
 
+from labial.hearing import features as front
 from labial.hearing.convert import RATES, converted_count, extended, mixed, taps
-from labial.hearing.features import (
-    BANDS,
-    DECAY,
-    FLOOR,
-    FRAME,
-    HOP,
-    HOPS,
-    LEVEL_BEGIN,
-    LEVEL_LEAST,
-    NEAR_LEVEL,
-    OFFSET,
-    RANGE,
-    RISE,
-    SEARCH,
-    WINDOW,
-    frames_of,
-    places,
-)
+from labial.hearing.features import BANDS, FLOOR, FRAME, HOP, HOPS, WINDOW, frames_of
 from labial.hearing.network import SMOOTHING, Heard
 from labial.hearing.quantise import Dense, HearingTables
 from labial.reference.fade import EASE, FADE
@@ -40,7 +24,7 @@ LEVEL_ONE = 64 * BANDS * LOG
 #: The first and the last bin that belong to a band.
 FIRST_BIN, LAST_BIN = 2, 121
 #: The level before any sound, and more than any level, in 1 / `LEVEL_ONE`.
-BEGIN, _NONE = round(LEVEL_BEGIN * LEVEL_ONE), 64 * LEVEL_ONE
+BEGIN, _NONE = round(front.LEVEL_BEGIN * LEVEL_ONE), 64 * LEVEL_ONE
 #: Points of the transform: pairs of samples.
 COUNT = WINDOW // 2
 #: The largest difference of samples in silence, the silent frames before a frame that rests, and frames to rest.
@@ -55,7 +39,7 @@ def sine_table() -> np.ndarray:
 def place_table() -> np.ndarray:
     """(129,) where each bin lies between the bands' edges, in 1/256; 0 for bins that belong to none."""
     at = np.arange(WINDOW // 2 + 1)
-    return np.where((at >= FIRST_BIN) & (at <= LAST_BIN), np.rint(places() * 256), 0).astype(np.int64)
+    return np.where((at >= FIRST_BIN) & (at <= LAST_BIN), np.rint(front.places() * 256), 0).astype(np.int64)
 
 
 def log_table() -> np.ndarray:
@@ -68,8 +52,7 @@ def tap_table() -> np.ndarray:
     return np.rint(taps() * 32768).astype(np.int64)
 
 
-def held(value: np.ndarray) -> np.ndarray:
-    """Values held to int16."""
+def _held(value: np.ndarray) -> np.ndarray:
     return np.clip(value, -32768, 32767)
 
 
@@ -89,7 +72,7 @@ def convert(sound: np.ndarray, rate: int) -> np.ndarray:
     for k in range(way.reach):
         total += padded[left + way.reach - k] * table[distance + k * spacing]
         total += padded[left + way.reach + 1 + k] * table[spacing - distance + k * spacing]
-    return held(((total >> 10) * spacing + 256) >> 9)
+    return _held(((total >> 10) * spacing + 256) >> 9)
 
 
 # ---- The features ----------------------------------------------------------------------------------------------------
@@ -110,16 +93,12 @@ def _transform(re: np.ndarray, im: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
             xr, xi = (xr + 2) >> 2, (xi + 2) >> 2
             at = k * turn * np.arange(quarter)
             c, s = sine[(at + 64) & 255], sine[at & 255]
-            if k:
-                turned = np.where(at > 0, (xr * c + xi * s + 16384) >> 15, xr)
-                xi = np.where(at > 0, (xi * c - xr * s + 16384) >> 15, xi)
-                xr = turned
-            out_re.append(xr)
-            out_im.append(xi)
+            out_re.append(np.where(at > 0, (xr * c + xi * s + 16384) >> 15, xr))
+            out_im.append(np.where(at > 0, (xi * c - xr * s + 16384) >> 15, xi))
         re, im = (np.stack(part, axis=2).reshape(len(re), COUNT) for part in (out_re, out_im))
         quarter, turn = quarter // 4, turn * 4
-    pairs = (part.reshape(len(re), COUNT // 2, 2) for part in (re, im))
-    done = [np.stack([(p[..., 0] + p[..., 1] + 1) >> 1, (p[..., 0] - p[..., 1] + 1) >> 1], axis=-1) for p in pairs]
+    done = [np.stack([(part[:, ::2] + part[:, 1::2] + 1) >> 1, (part[:, ::2] - part[:, 1::2] + 1) >> 1], axis=-1)
+            for part in (re, im)]
     return done[0].reshape(len(re), COUNT), done[1].reshape(len(re), COUNT)
 
 
@@ -188,27 +167,28 @@ class Levels(NamedTuple):
 def levels(energies: np.ndarray, silent: np.ndarray, begin: int) -> Levels:
     """The level of log2 energies (n, 24) in 1/256, of which hops are `silent` (n,), from the level `begin` on, in
     1 / `LEVEL_ONE`: see :mod:`labial.hearing.features`."""
-    level, waiting, fall = begin, True, round(SEARCH * LEVEL_ONE)
+    level, waiting, fall = begin, True, round(front.SEARCH * LEVEL_ONE)
     quietest = before = _NONE
     hops, voiced = np.zeros(len(energies), dtype=np.int64), np.zeros(len(energies), dtype=bool)
     for k, total in enumerate(energies.sum(axis=1).tolist()):
         now = total * 64
         if waiting and not silent[k]:
             quietest = min(quietest, max(before, now))
-            waiting = now <= level - round(NEAR_LEVEL * LEVEL_ONE) and now <= quietest + round(RISE * LEVEL_ONE)
+            waiting = (now <= level - round(front.NEAR_LEVEL * LEVEL_ONE)
+                       and now <= quietest + round(front.RISE * LEVEL_ONE))
         before = _NONE if silent[k] else now
         if not waiting:
-            level = max(level - fall, round(LEVEL_LEAST * LEVEL_ONE))
+            level = max(level - fall, round(front.LEVEL_LEAST * LEVEL_ONE))
         if now >= level:
-            level, waiting, fall = now, False, round(DECAY * LEVEL_ONE)
+            level, waiting, fall = now, False, round(front.DECAY * LEVEL_ONE)
         hops[k], voiced[k] = level // (64 * BANDS), not waiting
     return Levels(hops, voiced, level)
 
 
 def normalise(energies: np.ndarray, level: np.ndarray) -> np.ndarray:
     """(n, 24) int64, features in Q9 of log2 energies (n, 24) at levels (n,), both in 1/256."""
-    low, high = (round(end * LOG) for end in RANGE)
-    return (np.clip(energies - level[:, None], low, high) + round(OFFSET * LOG)) >> 1
+    low, high = (round(end * LOG) for end in front.RANGE)
+    return (np.clip(energies - level[:, None], low, high) + round(front.OFFSET * LOG)) >> 1
 
 
 # ---- The network -----------------------------------------------------------------------------------------------------
@@ -217,7 +197,7 @@ def normalise(energies: np.ndarray, level: np.ndarray) -> np.ndarray:
 def _dense(table: Dense, x: np.ndarray) -> np.ndarray:
     """(T, rows) of (T, columns), held to int16."""
     half = (1 << table.shift) >> 1
-    return held((x @ table.weight.T + table.bias * (1 << table.shift) + half) >> table.shift)
+    return _held((x @ table.weight.T + table.bias * (1 << table.shift) + half) >> table.shift)
 
 
 def heads(tables: HearingTables, heard: np.ndarray) -> np.ndarray:
@@ -230,7 +210,7 @@ def heads(tables: HearingTables, heard: np.ndarray) -> np.ndarray:
         total = np.zeros_like(y) + ((1 << block.shift) >> 1)
         for tap in range(past + ahead + 1):
             total += padded[tap * dilation : tap * dilation + len(y)] * block.taps[:, tap]
-        x = held((total >> block.shift) + (x if k else 0))
+        x = _held((total >> block.shift) + (x if k else 0))
     return _dense(tables.heads, np.maximum(_dense(tables.last, x), 0))
 
 
@@ -302,7 +282,9 @@ def delivered(tables: HearingTables, sound: np.ndarray, rate: int = 16000, exact
 
 def _delivered(tables: HearingTables, told: _Told, exact: bool) -> np.ndarray:
     """(T, 13) the poses of :func:`delivered`, Q4."""
-    pose = _faded(_resting(told.pose, told.still, tables.ahead + SMOOTHING))
+    pose = _resting(told.pose, told.still, tables.ahead + SMOOTHING)
+    eases = _eases(FADE, FADE + 1)[: len(pose)]
+    pose[: len(eases)] = (pose[: len(eases)] * eases[:, None] + 8192) >> 14
     if len(pose) and not exact and ((pose[-1] + 8) >> 4).any():
         pose = np.concatenate([pose, pose[-1] + ((-pose[-1] * _eases(EASE, EASE)[:, None] + 8192) >> 14)])
     return pose
@@ -343,22 +325,13 @@ def _resting(pose: np.ndarray, silent: np.ndarray, ahead: int) -> np.ndarray:
 
 def _rests(silent: np.ndarray, ahead: int) -> np.ndarray:
     """(T,) int64, Q14: how much of each pose is left there."""
-    padded = np.concatenate([np.ones(SILENT_BEFORE, dtype=bool), silent, np.ones(ahead, dtype=bool)])
+    padded = np.pad(silent, (SILENT_BEFORE, ahead), constant_values=True)
     span = SILENT_BEFORE + 1 + min(ahead, RESTING)
-    still = [padded[t : t + span].all() for t in range(len(silent))]
     eases, rest, shares = [0, *_eases(RESTING, RESTING)], RESTING, []
-    for rests in still:
-        rest = min(rest + 1, RESTING) if rests else max(rest - 1, 0)
+    for t in range(len(silent)):
+        rest = min(rest + 1, RESTING) if padded[t : t + span].all() else max(rest - 1, 0)
         shares.append(eases[RESTING - rest])
     return np.array(shares, dtype=np.int64)
-
-
-def _faded(pose: np.ndarray) -> np.ndarray:
-    """Poses (T, 13) that begin at rest."""
-    result = pose.copy()
-    eases = _eases(FADE, FADE + 1)[: len(pose)]
-    result[: len(eases)] = (pose[: len(eases)] * eases[:, None] + 8192) >> 14
-    return result
 
 
 def _eases(count: int, length: int) -> np.ndarray:

@@ -71,25 +71,26 @@ class Remembered(torch.autograd.Function):  # type: ignore[misc, unused-ignore]
         return of_y, of_weight, None
 
 
+def _through(layer: nn.Linear, x: torch.Tensor, integer: bool) -> torch.Tensor:
+    """What a layer makes of x; with `integer` its weights are rounded."""
+    return nn.functional.linear(x, rounded(layer.weight) if integer else layer.weight, layer.bias)
+
+
 class Block(nn.Module):  # type: ignore[misc, unused-ignore]
     """A dense layer, relu, and a memory; with `skip` the input is added."""
 
     def __init__(self, inputs: int, units: int, memory: Memory, skip: bool) -> None:
         super().__init__()
         self.dense = nn.Linear(inputs, units)
-        self.reach = memory
+        self.reach, self.skip = memory, skip
         self.memory = nn.Parameter(0.05 * torch.randn(units, memory.taps))
         with torch.no_grad():
             self.memory[:, memory.past] += 1.0
-        self.skip = skip
 
     def forward(self, x: torch.Tensor, integer: bool) -> torch.Tensor:
         """(B, T, inputs) to (B, T, units); with `integer` all weights are rounded."""
-        weight, memory = self.dense.weight, self.memory
-        if integer:
-            weight, memory = rounded(weight), rounded(memory)
-        y = torch.relu(nn.functional.linear(x, weight, self.dense.bias))
-        z: torch.Tensor = Remembered.apply(y, memory, self.reach)
+        y = torch.relu(_through(self.dense, x, integer))
+        z: torch.Tensor = Remembered.apply(y, rounded(self.memory) if integer else self.memory, self.reach)
         return z + x if self.skip else z
 
 
@@ -121,13 +122,9 @@ class Learner(nn.Module):  # type: ignore[misc, unused-ignore]
         for block in self.blocks:
             x = block(x, integer)
             excess = excess + (x.abs() - 32.0).clamp(min=0).square().mean()
-        x = torch.relu(self._dense(self.last, x, integer))
-        return Told(self._dense(self.classes, x, integer), self._dense(self.closed, x, integer)[..., 0],
-                    self._dense(self.faps, x, integer), excess)
-
-    @staticmethod
-    def _dense(layer: nn.Linear, x: torch.Tensor, integer: bool) -> torch.Tensor:
-        return nn.functional.linear(x, rounded(layer.weight) if integer else layer.weight, layer.bias)
+        x = torch.relu(_through(self.last, x, integer))
+        return Told(_through(self.classes, x, integer), _through(self.closed, x, integer)[..., 0],
+                    _through(self.faps, x, integer), excess)
 
 
 def restore(learner: Learner, model: HearingModel, mean: np.ndarray, scale: np.ndarray) -> None:
@@ -139,23 +136,19 @@ def restore(learner: Learner, model: HearingModel, mean: np.ndarray, scale: np.n
     if units > own or len(model.memories) != len(learner.plan.memories):
         raise LabialError(f"a network of {own} units in {len(learner.plan.memories)} blocks cannot begin with a model "
                           f"of {units} units in {len(model.memories)} blocks")
-    given: List[Tuple[Any, np.ndarray]] = [
-        (learner.last.weight, model.last), (learner.last.bias, model.last_bias),
-        (learner.classes.weight, model.class_weight), (learner.classes.bias, model.class_bias),
-        (learner.closed.weight, model.closed_weight[None]), (learner.closed.bias, model.closed_bias),
-        (learner.faps.weight, model.fap_weight * (model.fap_scale / scale)[:, None]),
-        (learner.faps.bias, (model.fap_bias * model.fap_scale + model.fap_mean - mean) / scale)]
     blocks: List[Any] = list(learner.blocks)
-    for block, dense, bias in zip(blocks, model.dense, model.bias):
-        given += [(block.dense.weight, dense), (block.dense.bias, bias)]
+    given: List[Tuple[Any, np.ndarray, np.ndarray]] = [
+        (learner.last, model.last, model.last_bias), (learner.classes, model.class_weight, model.class_bias),
+        (learner.closed, model.closed_weight[None], model.closed_bias),
+        (learner.faps, model.fap_weight * (model.fap_scale / scale)[:, None],
+         (model.fap_bias * model.fap_scale + model.fap_mean - mean) / scale),
+        *((block.dense, dense, bias) for block, dense, bias in zip(blocks, model.dense, model.bias))]
     with torch.no_grad():
-        for parameter, value in given:
+        for parameter, value in (pair for layer, *pairs in given for pair in zip((layer.weight, layer.bias), pairs)):
             rows = torch.from_numpy(np.asarray(value, np.float32))
-            if rows.ndim == 1:
-                parameter[: len(rows)] = rows
-            else:
-                parameter[: len(rows), : rows.shape[1]] = rows
-                parameter[: len(rows), rows.shape[1] :] = 0.0
+            if rows.ndim == 2:
+                parameter[: len(rows)] = 0.0
+            parameter[tuple(map(slice, rows.shape))] = rows
         for block, weight, memory in zip(blocks, model.memory, model.memories):
             block.memory[:units] = 0.0
             for tap in range(memory.taps):
@@ -169,23 +162,19 @@ def model_of(learner: Learner, mean: np.ndarray, scale: np.ndarray, closure: Clo
     """The model of a trained network. `mean` and `scale` (13,) are those of the frames that it learned, `edges` the
     scores at which lips begin to close and are closed. The weights are those that the library rounds to."""
 
-    def weights(layer: Any) -> np.ndarray:
-        return _array(rounded(layer if isinstance(layer, nn.Parameter) else layer.weight))
+    def array(value: torch.Tensor) -> np.ndarray:
+        return value.detach().numpy().astype(np.float32)
+
+    def both(layer: nn.Linear) -> Tuple[np.ndarray, np.ndarray]:
+        return array(rounded(layer.weight)), array(layer.bias)
 
     blocks: List[Any] = list(learner.blocks)
-    return HearingModel(memories=learner.plan.memories, dense=tuple(weights(block.dense) for block in blocks),
-                        bias=tuple(_array(block.dense.bias) for block in blocks),
-                        memory=tuple(weights(block.memory) for block in blocks), last=weights(learner.last),
-                        last_bias=_array(learner.last.bias), class_weight=weights(learner.classes),
-                        class_bias=_array(learner.classes.bias), closed_weight=weights(learner.closed)[0],
-                        closed_bias=_array(learner.closed.bias), fap_weight=weights(learner.faps),
-                        fap_bias=_array(learner.faps.bias), classes=CLASSES, fap_mean=np.asarray(mean, np.float32),
-                        fap_scale=np.asarray(scale, np.float32), closed=closure.pose, closing=closure.share,
-                        close_from=edges[0], close_to=edges[1], attribution=attribution, training=training)
-
-
-def _array(value: torch.Tensor) -> np.ndarray:
-    return value.detach().numpy().astype(np.float32)
+    dense, bias = zip(*(both(block.dense) for block in blocks))
+    last, classes, lips, faps = map(both, (learner.last, learner.classes, learner.closed, learner.faps))
+    return HearingModel(
+        learner.plan.memories, dense, bias, tuple(array(rounded(block.memory)) for block in blocks), *last, *classes,
+        lips[0][0], lips[1], *faps, CLASSES, np.asarray(mean, np.float32), np.asarray(scale, np.float32),
+        closure.pose, closure.share, *edges, attribution, training)
 
 
 #: Frames of a crop, and crops of a batch.
@@ -243,8 +232,8 @@ class _Data:
 
     def __init__(self, folders: Sequence[Prepared], sounds: Sequence[Prepared], teacher: Optional[HearingModel],
                  options: Options) -> None:
-        parts = [lesson(item.part(held=False), teacher, options.taught) for item in folders]
-        parts += [lesson(item.part(held=False), teacher, 1.0) for item in sounds]
+        taught = [(item, options.taught) for item in folders] + [(item, 1.0) for item in sounds]
+        parts = [lesson(item.part(held=False), teacher, share) for item, share in taught]
         for number, part in enumerate(parts, 1):
             if len(part.classes) <= LENGTH:
                 raise LabialError(f"folder {number} has no more than {LENGTH} frames to learn from")
@@ -256,9 +245,8 @@ class _Data:
         every = np.concatenate([part.frames for part in parts]).astype(np.float64)
         self.rest = targets.frames([], 50)[-1]
         self.mean, self.scale = every.mean(axis=0), np.maximum(every.std(axis=0), 1.0)
-        count = np.zeros(len(CLASSES))
-        for part, share in zip(parts, self.shares):
-            count += share * np.bincount(part.classes, minlength=len(CLASSES)) / len(part.classes)
+        count = sum(share * np.bincount(part.classes, minlength=len(CLASSES)) / len(part.classes)
+                    for part, share in zip(parts, self.shares))
         self.weight = (1 / len(CLASSES) / np.maximum(count, 1e-4)) ** _RARITY
 
     def batch(self, random: np.random.Generator, pool: np.ndarray) -> _Batch:

@@ -6,11 +6,8 @@ sound is free of any licence; MBROLA's voices, which espeak-ng can use, are for 
 flite and festival are called as programs, espeak-ng as a library.
 
 The folder that ``labial speech-corpus`` writes is one of those that ``labial train-hear`` reads: sounds in FLAC, each
-with a .lab beside it.
-
-What is said with espeak-ng's library does what ``labial-say-espeak`` does (tools/speak), so that both have the same
-phonemes at the same times: espeak-ng reports p, t and k at their burst, and the silence before it, while lips or tongue
-are shut, is theirs.
+with a .lab beside it. Phonemes of espeak-ng have the times that ``labial-say-espeak`` gives them (tools/speak): it
+reports p, t and k at their burst, and the silence before it, while lips or tongue are shut, is theirs.
 """
 
 from __future__ import annotations
@@ -24,6 +21,7 @@ import tempfile
 import unicodedata
 import wave
 import zlib
+from itertools import count
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -40,10 +38,7 @@ from labial.files.grammar import read_text
 from labial.files.outputs import folder
 
 #: Values of espeak-ng's speak_lib.h.
-_END, _PHONEME = 0, 7
-_RATE, _PITCH = 1, 3
-_NORMAL_RATE, _NORMAL_PITCH = 175, 50
-_UTF8 = 1
+_END, _PHONEME, _RATE, _PITCH, _NORMAL_RATE, _NORMAL_PITCH, _UTF8 = 0, 7, 1, 3, 175, 50, 1
 #: Shorter stretches without a label are word boundaries, glottal stops or glides, for which espeak-ng has no IPA: they
 #: belong to the phoneme before. Milliseconds; pauses last 150.
 SHORTEST_PAUSE = 65
@@ -306,14 +301,10 @@ def read_sentences(path: PathLike) -> List[str]:
     DataError for a file without any."""
     table = Path(path).name == "metadata.csv"
     lines = [line.rpartition("|")[2] if table else line for line in read_text(path).splitlines()]
-    found = [_short(" ".join(line.split())) for line in lines if any(c.isalpha() for c in line)]
+    found = [" ".join(line.split()) for line in lines if any(c.isalpha() for c in line)]
     if not found:
         raise DataError(path, None, "no sentences")
-    return found
-
-
-def _short(line: str) -> str:
-    return line if len(line) <= _LONGEST else line[:_LONGEST].rpartition(" ")[0] or line[:_LONGEST]
+    return [line if len(line) <= _LONGEST else line[:_LONGEST].rpartition(" ")[0] or line[:_LONGEST] for line in found]
 
 
 def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str], minutes: float, seed: int = 0,
@@ -329,31 +320,27 @@ def write_corpus(path: PathLike, sentences: Sequence[str], voices: Sequence[str]
         raise LabialError(f"{path}: the folder is not empty")
     if not sentences or not voices or minutes <= 0:
         raise LabialError("a corpus of speech needs sentences, voices and minutes")
-    seconds, sounds = 0.0, 0
+    seconds = 0.0
     with folder(path) as place:
-        for voice, said in _turns(sentences, voices, seed):
-            for spoken in said:
-                name = f"{sounds:05d}_{''.join(c if c.isalnum() else '-' for c in voice)}"
-                sound = io.BytesIO()  # so that a full disk is an error of the file, not of the sound's library
-                soundfile.write(sound, spoken.samples, spoken.rate, format="FLAC")
-                (place / f"{name}.flac").write_bytes(sound.getvalue())
-                (place / f"{name}.lab").write_text(lab_of(spoken.segments), "utf-8")
-                seconds += len(spoken.samples) / spoken.rate
-                sounds += 1
-                if told:
-                    told(seconds)
-                if seconds >= 60 * minutes:
-                    return Written(sounds, seconds)
+        for sounds, (voice, spoken) in enumerate(_turns(sentences, voices, seed), 1):
+            name = f"{sounds - 1:05d}_{''.join(c if c.isalnum() else '-' for c in voice)}"
+            sound = io.BytesIO()  # so that a full disk is an error of the file, not of the sound's library
+            soundfile.write(sound, spoken.samples, spoken.rate, format="FLAC")
+            (place / f"{name}.flac").write_bytes(sound.getvalue())
+            (place / f"{name}.lab").write_text(lab_of(spoken.segments), "utf-8")
+            seconds += len(spoken.samples) / spoken.rate
+            if told:
+                told(seconds)
+            if seconds >= 60 * minutes:
+                return Written(sounds, seconds)
     raise AssertionError("the voices never end")
 
 
-def _turns(sentences: Sequence[str], voices: Sequence[str], seed: int) -> Iterator[Tuple[str, Iterator[Spoken]]]:
-    """Voices in turn, each with what it says in one go."""
-    turn = 0
-    while True:
-        for voice in voices:
-            random = np.random.default_rng([seed, turn, zlib.crc32(voice.encode("utf-8"))])
-            texts = [sentences[k] for k in random.integers(len(sentences), size=_RUN)]
-            pace, pitch = (float(high ** random.uniform(-1, 1)) for high in (PACE, PITCH))
-            yield voice, speak(voice, texts, pace, pitch)
-        turn += 1
+def _turns(sentences: Sequence[str], voices: Sequence[str], seed: int) -> Iterator[Tuple[str, Spoken]]:
+    """What the voices say in turn, each some sentences in one go."""
+    for turn, voice in ((turn, voice) for turn in count() for voice in voices):
+        random = np.random.default_rng([seed, turn, zlib.crc32(voice.encode("utf-8"))])
+        texts = [sentences[k] for k in random.integers(len(sentences), size=_RUN)]
+        pace, pitch = (float(high ** random.uniform(-1, 1)) for high in (PACE, PITCH))
+        for spoken in speak(voice, texts, pace, pitch):
+            yield voice, spoken

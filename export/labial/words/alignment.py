@@ -45,9 +45,13 @@ class _Group:
     sounds: Tuple[np.ndarray, np.ndarray, np.ndarray]  #: of 0, 1 and 2 phonemes from each on: (B, m + 1), (B, m), ...
 
     @property
-    def sizes(self) -> Tuple[int, int]:
-        """n and m."""
-        return self.letters.shape[1], self.sounds[1].shape[1]
+    def sizes(self) -> Tuple[int, int, int]:
+        """B, n and m."""
+        return (*self.letters.shape, self.sounds[1].shape[1])
+
+    def of_letter(self, probability: np.ndarray, letter: int) -> List[np.ndarray]:
+        """The probabilities of each sound of the letters at one place, shaped as `sounds`."""
+        return [probability[self.letters[:, letter, None], sounds] for sounds in self.sounds]
 
 
 def _groups(entries: Sequence[Entry]) -> List[_Group]:
@@ -63,26 +67,18 @@ def _groups(entries: Sequence[Entry]) -> List[_Group]:
     return groups
 
 
-def _of_letter(group: _Group, probability: np.ndarray, letter: int) -> List[np.ndarray]:
-    """The probabilities of each sound of the letters at one place, shaped as `group.sounds`."""
-    return [probability[group.letters[:, letter, None], sounds] for sounds in group.sounds]
-
-
 def _expected(group: _Group, probability: np.ndarray, counts: np.ndarray) -> None:
     """Adds to `counts` (letters * SOUNDS,) how often each letter is expected to sound as what."""
-    n, m = group.sizes
-    size = len(group.index)
-    emissions = [_of_letter(group, probability, a) for a in range(n)]
+    size, n, m = group.sizes
+    emissions = [group.of_letter(probability, a) for a in range(n)]
     forward = np.zeros((n + 1, size, m + 1))
     forward[0, :, 0] = 1.0
     for a in range(n):
         for k in range(min(2, m) + 1):
             forward[a + 1, :, k:] += forward[a, :, : m + 1 - k] * emissions[a][k]
     total = forward[n, :, m]
-    possible = total > 0.0
-    scale = np.where(possible, 1.0 / np.where(possible, total, 1.0), 0.0)
     backward = np.zeros((size, m + 1))
-    backward[:, m] = scale
+    backward[:, m] = np.divide(1.0, total, out=np.zeros(size), where=total > 0.0)
     for a in reversed(range(n)):
         before = np.zeros_like(backward)
         for k in range(min(2, m) + 1):
@@ -126,12 +122,12 @@ def align(entries: Sequence[Entry], probability: np.ndarray) -> List[Optional[Tu
     with np.errstate(divide="ignore"):
         logarithm = np.log(probability)
     for group in _groups(entries):
-        n, m = group.sizes
-        size = len(group.index)
+        size, n, m = group.sizes
         best = np.full((size, m + 1), -np.inf)
         best[:, 0] = 0.0
         taken = np.zeros((n, size, m + 1), dtype=np.int8)
-        for a, cost in enumerate(_of_letter(group, logarithm, a) for a in range(n)):
+        for a in range(n):
+            cost = group.of_letter(logarithm, a)
             after = np.full_like(best, -np.inf)
             for k in range(min(2, m) + 1):
                 reached = best[:, : m + 1 - k] + cost[k]
@@ -139,12 +135,10 @@ def align(entries: Sequence[Entry], probability: np.ndarray) -> List[Optional[Tu
                 after[:, k:][better] = reached[better]
                 taken[a, :, k:][better] = k
             best = after
-        place = np.full(size, m)
-        sounds = np.zeros((size, n), dtype=int)
-        rows = np.arange(size)
+        place, sounds, rows = np.full(size, m), np.zeros((size, n), dtype=int), np.arange(size)
         for a in reversed(range(n)):
             k = taken[a, rows, place]
-            place = place - k
+            place -= k
             for count in range(min(2, m) + 1):
                 sounds[k == count, a] = group.sounds[count][k == count, place[k == count]]
         for row, entry in enumerate(group.index.tolist()):

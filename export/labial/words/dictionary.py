@@ -110,11 +110,8 @@ def read_dictionary(path: PathLike) -> List[Entry]:
 
 
 def letters_of(word: str) -> Tuple[int, ...]:
-    """The numbers of a word's letters. Raises KeyError for others than a to z and the apostrophe."""
-    return tuple(_NUMBERS[character] for character in word)
-
-
-_NUMBERS = {character: number for number, character in enumerate(LETTERS) if number}
+    """The numbers of a word's letters, a to z and the apostrophe."""
+    return tuple(map(LETTERS.index, word))
 
 
 def read_common(path: PathLike) -> List[str]:

@@ -10,6 +10,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -52,9 +53,8 @@ class WordTables:
 
     @cached_property
     def _nodes(self) -> List[Nodes]:
-        parts = [slice(begin, end) for begin, end in zip(self.first[:-1], self.first[1:])]
-        return [(self.question[part].tolist(), self.yes[part].tolist(), self.no[part].tolist(),
-                 self.label[part].tolist()) for part in parts]
+        columns = (self.question, self.yes, self.no, self.label)
+        return list(zip(*([part.tolist() for part in np.split(item, self.first[1:-1])] for item in columns)))
 
     def nodes_of(self, letter: int) -> Nodes:
         """Questions, yes-nodes, no-nodes and labels of a letter's tree."""
@@ -81,9 +81,8 @@ def _check(tables: WordTables) -> None:
     expect(bool(((tables.question >= -1) & (tables.question < QUESTIONS)).all()), "a question does not exist")
     expect(bool(((tables.label >= 0) & (tables.label < labels)).all()), "a node's label does not exist")
     expect(0 < tables.multiplier < 1 << 32 and tables.multiplier % 2 == 1, "the multiplier is not an odd number")
-    here = np.arange(nodes) - np.repeat(first[:-1], np.diff(first))
-    size = np.repeat(np.diff(first), np.diff(first))
-    inner = tables.question >= 0
+    sizes, inner = np.diff(first), tables.question >= 0
+    here, size = np.arange(nodes) - np.repeat(first[:-1], sizes), np.repeat(sizes, sizes)
     for column in columns[:2]:
         expect(bool(((column > here) & (column < size))[inner].all()), "a node does not follow the one above it")
     _check_shape(tables)
@@ -98,13 +97,11 @@ def _check(tables: WordTables) -> None:
 def _check_shape(tables: WordTables) -> None:
     """Raises ModelError unless every node but the roots is below exactly one other, and none below more than
     `_DEEPEST`."""
-    for begin, end in zip(tables.first[:-1].tolist(), tables.first[1:].tolist()):
-        question, yes, no = (column[begin:end].tolist() for column in (tables.question, tables.yes, tables.no))
-        depth: List[int] = [0] + [-1] * (end - begin - 1)
-        for node in range(end - begin):
-            if question[node] < 0:
-                continue
-            for below in (yes[node], no[node]):
+    for letter in range(1, len(LETTERS)):
+        question, yes, no, _ = tables.nodes_of(letter)
+        depth = [0] + [-1] * (len(question) - 1)
+        for node in range(len(question)):
+            for below in (yes[node], no[node]) if question[node] >= 0 else ():
                 expect(depth[below] < 0 <= depth[node] < _DEEPEST, "a tree's node is below two others, or too deep")
                 depth[below] = depth[node] + 1
         expect(min(depth) >= 0, "a node belongs to no tree")
@@ -121,6 +118,7 @@ def is_tables(path: PathLike) -> bool:
 def save(tables: WordTables, path: PathLike) -> None:
     """Writes the tables as a compressed .npz; the same tables give the same bytes."""
     patches = list(tables.exceptions.values())
+    letters, labels = zip(*chain(*patches)) if patches else ((), ())
     about = json.dumps({"attribution": tables.attribution, "training": tables.training}, sort_keys=True)
     content: Dict[str, np.ndarray] = {
         "format": np.array([FORMAT]), "sounds": np.array(tables.sounds, dtype=np.uint16),
@@ -128,8 +126,7 @@ def save(tables: WordTables, path: PathLike) -> None:
         "yes": tables.yes.astype(np.uint16), "no": tables.no.astype(np.uint16), "label": tables.label.astype(np.uint8),
         "multiplier": np.array([tables.multiplier], dtype=np.uint32),
         "patch_count": np.array([len(item) for item in patches], dtype=np.uint8),
-        "patch_letter": np.array([place for item in patches for place, _ in item], dtype=np.uint8),
-        "patch_label": np.array([label for item in patches for _, label in item], dtype=np.uint8),
+        "patch_letter": np.array(letters, dtype=np.uint8), "patch_label": np.array(labels, dtype=np.uint8),
         "words": np.frombuffer("\n".join(tables.exceptions).encode("ascii"), dtype=np.uint8),
         "about": np.frombuffer(about.encode("utf-8"), dtype=np.uint8),
     }
@@ -172,9 +169,9 @@ def _load(path: PathLike) -> WordTables:
     pairs = list(zip(numbers["patch_letter"].tolist(), numbers["patch_label"].tolist()))
     ends = np.cumsum(counts).tolist()
     exceptions = {word: tuple(pairs[end - count : end]) for word, count, end in zip(words, counts.tolist(), ends)}
-    return WordTables(tuple(numbers["sounds"].tolist()), numbers["first"], numbers["question"], numbers["yes"],
-                      numbers["no"], numbers["label"], exceptions, int(numbers["multiplier"][0]), about["attribution"],
-                      about["training"])
+    first, question, yes, no, label = (numbers[name] for name in ("first", "question", "yes", "no", "label"))
+    return WordTables(tuple(numbers["sounds"].tolist()), first, question, yes, no, label, exceptions,
+                      int(numbers["multiplier"][0]), about["attribution"], about["training"])
 
 
 def names(numbers: Sequence[int]) -> str:
@@ -195,9 +192,8 @@ def labels_by_trees(tables: WordTables, letters: Sequence[int], sounds: Sequence
         if forced is not None:
             labels[place] = forced
             continue
-        values = features(letters, place, labels)
+        values, node = features(letters, place, labels), 0
         question, yes, no, label = tables.nodes_of(letters[place])
-        node = 0
         while question[node] >= 0:
             node = yes[node] if answer(question[node], values, tables.sounds) else no[node]
         labels[place] = label[node]
@@ -215,10 +211,8 @@ def _label_of(tables: WordTables, letters: Sequence[int], place: int, sounds: Se
         sound = ("IY",) if is_last else ("EH",)
     wanted = tuple(PHONEMES.index(name) for name in sound)
     question, _, _, label = tables.nodes_of(letters[place])
-    for asked, given in zip(question, label):
-        if asked < 0 and phonemes_of(tables.sounds[given]) == wanted:
-            return given
-    return None
+    return next((given for asked, given in zip(question, label)
+                 if asked < 0 and phonemes_of(tables.sounds[given]) == wanted), None)
 
 
 def labels_of(tables: WordTables, word: str, sounds: Sequence[Accent] = ()) -> List[int]:
@@ -232,8 +226,7 @@ def labels_of(tables: WordTables, word: str, sounds: Sequence[Accent] = ()) -> L
 
 def read(tables: WordTables, word: str, sounds: Sequence[Accent] = ()) -> Tuple[Tuple[int, int], ...]:
     """The phonemes of such a word, each with the place of its letter."""
-    labels = labels_of(tables, word, sounds)
-    return tuple((phoneme, place) for place, label in enumerate(labels)
+    return tuple((phoneme, place) for place, label in enumerate(labels_of(tables, word, sounds))
                  for phoneme in phonemes_of(tables.sounds[label]))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from dataclasses import replace
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -26,37 +28,36 @@ ATTRIBUTION = ("Trained on the CMU Pronouncing Dictionary. Copyright (C) 1993-20
 SOUNDS = {"hm": ("M",), "hmm": ("M",), "hmmm": ("M",), "hmmmm": ("M",), "hmph": ("M", "F"), "psst": ("P", "S", "T"),
           "pst": ("P", "S", "T"), "pfft": ("P", "F", "T"), "pft": ("P", "F", "T"), "pff": ("P", "F")}
 
-Report = Callable[[str], None]
+Report = Callable[[str], Any]
 Sounds = Sequence[Optional[Tuple[int, ...]]]
-
-
-def _silent(_: str) -> None:
-    """Reports to nobody."""
 
 
 def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAVES, exceptions: int = EXCEPTIONS,
           report: Optional[Report] = None) -> WordTables:
     """The tables of a dictionary; of SOUNDS and the `common` words, in their order, the first `exceptions` that the
     trees read wrongly become exceptions. `report` is told what is being done."""
-    report = report or _silent
+    report = report or str  # which tells nobody
     tables, aligned, loose = _trees(entries, leaves, report)
-    known = [Entry(word, letters_of(word), tuple(map(PHONEMES.index, sounds)), 0) for word, sounds in SOUNDS.items()]
-    pairs = [(entry, sounds) for entry, sounds in zip(entries, aligned) if entry.word not in SOUNDS]
-    known += [entry for entry, _ in pairs]
-    completed = _completed(known, [None] * len(SOUNDS) + [sounds for _, sounds in pairs], loose)
+    pairs: List[Tuple[Entry, Optional[Tuple[int, ...]]]] = [
+        (Entry(word, letters_of(word), tuple(map(PHONEMES.index, sounds)), 0), None) for word, sounds in SOUNDS.items()]
+    pairs += [pair for pair in zip(entries, aligned) if pair[0].word not in SOUNDS]
+    known, given = zip(*pairs)
+    # Entries that have no alignment, such as "of", get the best one of the probabilities `loose`.
+    others = [place for place, sounds in enumerate(given) if sounds is None]
+    further = dict(zip(others, align([known[place] for place in others], loose)))
+    completed = [further.get(place, sounds) for place, sounds in enumerate(given)]
     found = _exceptions(tables, known, completed, [*SOUNDS, *common], exceptions)
     report(f"{tables.leaves} leaves, {len(tables.sounds)} labels, {len(found)} exceptions")
     about: Dict[str, Any] = {"entries": len(entries), "words": sum(entry.variant == 0 for entry in entries),
                              "not_aligned": sum(item is None for item in aligned), "leaves": leaves,
                              "exceptions": exceptions}
     multiplier = multiplier_for(list(found), (entry.word for entry in entries))
-    return WordTables(tables.sounds, tables.first, tables.question, tables.yes, tables.no, tables.label, found,
-                      multiplier, ATTRIBUTION, about)
+    return replace(tables, exceptions=found, multiplier=multiplier, attribution=ATTRIBUTION, training=about)
 
 
 def held_out(entries: Sequence[Entry], *, leaves: int = LEAVES, report: Optional[Report] = None) -> Dict[str, float]:
     """How well trees that were trained on 85 % of the words read the others, without exceptions (:func:`score`)."""
-    tables, _, _ = _trees([entry for entry in entries if not entry.held_out], leaves, report or _silent)
+    tables = _trees([entry for entry in entries if not entry.held_out], leaves, report or str)[0]
     return score(tables, pronunciations([entry for entry in entries if entry.held_out]))
 
 
@@ -93,10 +94,12 @@ def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordT
     report(f"aligning {len(entries)} pronunciations")
     probability = learn(entries)
     aligned = align(entries, probability)
-    sounds, labels = _labels(aligned)
+    sounds = tuple(sorted({0, *(sound for item in aligned if item for sound in item)}))  # a label is a place in these
+    if len(sounds) > LABELS_MOST:
+        raise ModelError(f"the letters have {len(sounds)} sounds, and there is room for {LABELS_MOST}")
     asked = Asked(sounds)
     report(f"{len(sounds)} labels; growing trees")
-    grown = [grow(samples, asked) for samples in _samples(entries, aligned, labels)]
+    grown = [grow(samples, asked) for samples in _samples(entries, aligned, sounds)]
     pruned = prune(grown, leaves)
     first = np.cumsum([0, *(len(tree.question) for tree in pruned)])
     question, yes, no, label = (np.concatenate([getattr(tree, name) for tree in pruned])
@@ -104,39 +107,19 @@ def _trees(entries: Sequence[Entry], leaves: int, report: Report) -> Tuple[WordT
     return WordTables(sounds, first, question, yes, no, label, {}), aligned, loosened(probability, sounds)
 
 
-def _labels(aligned: Sounds) -> Tuple[Tuple[int, ...], Dict[int, int]]:
-    """The sounds that occur, nothing first and then by number, and the label of each."""
-    used = sorted({0, *(sound for item in aligned if item for sound in item)})
-    if len(used) > LABELS_MOST:
-        raise ModelError(f"the letters have {len(used)} sounds, and there is room for {LABELS_MOST}")
-    return tuple(used), {sound: label for label, sound in enumerate(used)}
-
-
-def _samples(entries: Sequence[Entry], aligned: Sounds, labels: Dict[int, int]) -> List[Samples]:
+def _samples(entries: Sequence[Entry], aligned: Sounds, known: Sequence[int]) -> List[Samples]:
     """The samples of each letter; raises ModelError if one does not occur."""
-    rows: List[List[List[int]]] = [[] for _ in LETTERS]
-    chosen: List[List[int]] = [[] for _ in LETTERS]
-    weights: List[List[int]] = [[] for _ in LETTERS]
+    labels = {sound: label for label, sound in enumerate(known)}
+    rows: Dict[int, List[Tuple[List[int], int, int]]] = defaultdict(list)
     for entry, sounds in zip(entries, aligned):
-        if sounds is None:
-            continue
-        given = [labels[sound] for sound in sounds]
-        for place, letter in enumerate(entry.letters):
-            rows[letter].append(features(entry.letters, place, given))
-            chosen[letter].append(given[place])
-            weights[letter].append(OTHER if entry.variant else FIRST)
-    missing = [LETTERS[letter] for letter in range(1, len(LETTERS)) if not rows[letter]]
+        given = [labels[sound] for sound in sounds or ()]
+        for place, (letter, label) in enumerate(zip(entry.letters, given)):
+            rows[letter].append((features(entry.letters, place, given), label, OTHER if entry.variant else FIRST))
+    missing = [LETTERS[letter] for letter in range(1, len(LETTERS)) if letter not in rows]
     if missing:
         raise ModelError(f"no word of the dictionary that could be aligned has the letter {missing[0]}")
-    return [Samples(np.array(rows[letter], dtype=np.uint8), np.array(chosen[letter]), np.array(weights[letter]))
-            for letter in range(1, len(LETTERS))]
-
-
-def _completed(entries: Sequence[Entry], aligned: Sounds, loose: np.ndarray) -> Sounds:
-    """The alignments, and of entries that have none, such as "of", those with the probabilities `loose`."""
-    others = [place for place, sounds in enumerate(aligned) if sounds is None]
-    found = dict(zip(others, align([entries[place] for place in others], loose)))
-    return [found.get(place, sounds) for place, sounds in enumerate(aligned)]
+    columns = (zip(*rows[letter]) for letter in range(1, len(LETTERS)))
+    return [Samples(np.array(asked, dtype=np.uint8), *map(np.array, others)) for asked, *others in columns]
 
 
 def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, common: Sequence[str],
@@ -154,7 +137,6 @@ def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, c
         if len(found) == most:
             break
         if word in given and spoken(tables, word) not in known[word]:
-            read = labels_of(tables, word)
-            pairs = zip(read, given[word])
+            pairs = zip(labels_of(tables, word), given[word])
             found[word] = tuple((place, right) for place, (wrong, right) in enumerate(pairs) if wrong != right)
     return found
