@@ -56,7 +56,9 @@ def writing(path: PathLike, encoding: Optional[str] = None) -> Iterator[IO[Any]]
         with _named(path):
             if target is not None:
                 _sweep(target)
-            file = _opened(_create(temporary, target) if target is not None else _direct(path), encoding)
+            descriptor = _create(temporary, target) if target is not None else _direct(path)
+            newline = None if encoding is None else "\n"
+            file = os.fdopen(descriptor, "wb" if encoding is None else "w", encoding=encoding, newline=newline)
         with _unnamed_of(path), file:
             with _unnamed_of(path):
                 yield file
@@ -129,22 +131,17 @@ def check(path: Optional[PathLike], *suffixes: str) -> None:
     call it before the work. None is standard output."""
     if path is None:
         return
-    _check_target(path)
-    if suffixes:
-        check_suffix(path, *suffixes)
-
-
-def _check_target(path: PathLike) -> None:
     with _named(path):
         target = _resolved(path)
-        if target is None:
-            return
-        temporary = _part(target)
-        try:
-            os.close(_create(temporary, target))
-        finally:
-            with suppress(FileNotFoundError):
-                os.unlink(temporary)
+        if target is not None:
+            temporary = _part(target)
+            try:
+                os.close(_create(temporary, target))
+            finally:
+                with suppress(FileNotFoundError):
+                    os.unlink(temporary)
+    if suffixes:
+        check_suffix(path, *suffixes)
 
 
 def check_folder(path: PathLike, name: Optional[PathLike] = None) -> None:
@@ -212,9 +209,8 @@ def _sweep(target: str) -> None:
     directory, ours = os.path.split(_part(target))
     begin = ours[: -len("00000000" + SUFFIX)]
     with suppress(OSError):
-        found = [entry.path for entry in os.scandir(directory) if entry.name.startswith(begin)
-                 and re.fullmatch(f"[0-9a-f]{{8}}{re.escape(SUFFIX)}", entry.name[len(begin):])]
-        for path in found:
+        pattern = re.compile(f"{re.escape(begin)}[0-9a-f]{{8}}{re.escape(SUFFIX)}")
+        for path in [entry.path for entry in os.scandir(directory) if pattern.fullmatch(entry.name)]:
             with suppress(OSError):
                 _remove_if_dead(path)
 
@@ -294,12 +290,6 @@ def _direct(path: PathLike) -> int:
     if directory == f"/proc/{os.getpid()}/fd" and name.isdigit():
         return os.dup(int(name))
     return os.open(path, os.O_WRONLY | os.O_TRUNC)
-
-
-def _opened(descriptor: int, encoding: Optional[str]) -> IO[Any]:
-    if encoding is None:
-        return os.fdopen(descriptor, "wb")
-    return os.fdopen(descriptor, "w", encoding=encoding, newline="\n")
 
 
 # ---- Renaming
@@ -382,10 +372,10 @@ def _unnamed_of(path: PathLike) -> Iterator[None]:
 
 
 def _failure(path: PathLike, error: OSError) -> LabialError:
-    name = os.fsdecode(path)
+    name, reason = os.fsdecode(path), error.strerror or error
     if isinstance(error, FileNotFoundError):
-        return LabialError(f"{name}: there is no folder {os.path.dirname(name) or '.'}")
-    return LabialError(f"{name}: {error.strerror or error}")
+        reason = f"there is no folder {os.path.dirname(name) or '.'}"
+    return LabialError(f"{name}: {reason}")
 
 
 def _translated(error: OSError, staging: Path, target: Path, shown: PathLike) -> Exception:

@@ -19,9 +19,8 @@ ERRORS = (wave.Error, EOFError, RuntimeError)
 _BLOCK = 65_536
 #: Bytes that tell a WAV file.
 HEAD = 12
-#: Bytes, from which on a head says that whoever wrote it did not know their number; others write 0. And samples.
+#: Bytes, from which on a head says that whoever wrote it did not know their number; others write 0.
 _UNKNOWN_BYTES = 0x7FFFF000
-_UNKNOWN = _UNKNOWN_BYTES // 8
 #: The mean of channels that cancel each other has less than this share of their energy. Nothing is said until they have
 #: that of a faint sound: 10 ms of 16 kHz at 80 of 32,768.
 _SHARE, _FAINT = 0.01, 1e6
@@ -76,7 +75,7 @@ def blocks(sound: wave.Wave_read, path: str = "the sound", block_frames: int = _
         yield block
     if not count:
         raise DataError(path, None, "the sound is empty: it has no samples")
-    if count < wanted < _UNKNOWN:
+    if count < wanted < _UNKNOWN_BYTES // 8:
         there, said = (number / sound.getframerate() for number in (count, wanted))
         warnings.warn(f"{path}: the file is cut off: {there:.2f} of {said:.2f} s are there", stacklevel=2)
 

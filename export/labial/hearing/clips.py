@@ -16,6 +16,7 @@ import os
 import warnings
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple, TypeVar
 
@@ -53,15 +54,8 @@ def find(folder: PathLike) -> List[Tuple[str, Told]]:
     """The sounds of a folder in the order of their paths, each with what tells its phonemes. Raises DataError for a
     folder without sounds, for a sound without either and for a table with a wrong line, which it names. Lines of a
     table without a sound are passed over: parts of LJ Speech come with its whole table."""
-    sounds = _sounds(folder)
-    tables: Dict[Path, Dict[str, Told]] = {}
-    found = []
-    for sound in sounds:
-        for parent in (sound.parent, sound.parent.parent):
-            if parent not in tables:
-                tables[parent] = _table(parent / TABLE)
-        found.append((str(sound), _told(sound, tables)))
-    return found
+    table = cache(_table)
+    return [(str(sound), _told(sound, table)) for sound in _sounds(folder)]
 
 
 def untold(folder: PathLike) -> List[Clip]:
@@ -80,14 +74,15 @@ def _sounds(folder: PathLike) -> List[Path]:
     return sounds
 
 
-def _told(sound: Path, tables: Dict[Path, Dict[str, Told]]) -> Told:
+def _told(sound: Path, table: Callable[[Path], Dict[str, Told]]) -> Told:
+    tables = [table(parent / TABLE) for parent in (sound.parent, sound.parent.parent)]
     for suffix in suffixes():
         for beside in (sound.with_suffix(suffix), sound.with_suffix(_SPELT.get(suffix, suffix))):
             if beside.is_file():
                 return Told(str(beside), None, None)
-    for parent in (sound.parent, sound.parent.parent):
-        if sound.stem in tables[parent]:
-            return tables[parent][sound.stem]
+    for texts in tables:
+        if sound.stem in texts:
+            return texts[sound.stem]
     text = sound.with_suffix(".txt")
     if not text.is_file():
         raise DataError(sound, None, f"neither timings nor a text are beside it, and no {TABLE} names it")

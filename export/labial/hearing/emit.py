@@ -122,23 +122,17 @@ def _comment(tables: HearingTables, what: str) -> str:
     return block_comment(f"{text} {tables.attribution}" if tables.attribution else text)
 
 
-def _limit(tables: HearingTables) -> Tuple[str, str]:
+def _limit(tables: HearingTables) -> Tuple[str, str, str]:
     """What goes around the tables of a model that is larger than LABIAL_HEAR_UNITS_MAX is by default, so that a project
-    which compiles every model leaves it out."""
+    which compiles every model leaves it out; and what its header has instead. All builds compile its source, so it is
+    no error before a program uses the model: then the compiler's message has the name that tells what is missing."""
     if tables.units <= _UNITS_MAX:
-        return "", ""
+        return "", "", ""
     return ("/* For builds that have room for it (labial/config.h). */\n"
-            f"#if LABIAL_HEAR_UNITS_MAX >= {tables.units}\n\n", "\n#endif\n")
-
-
-def _missing(tables: HearingTables) -> str:
-    """What a header has in a build without room for the model. All builds compile its source, so it is no error before
-    a program uses the model: then the compiler's message has the name that tells what is missing."""
-    if tables.units <= _UNITS_MAX:
-        return ""
-    return ("\n#else\n\n/* Any use is an error that says what the model needs. */\n" + "".join(
-        f"#define {name} {tables.name}_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_{tables.units}\n"
-        for name in (tables.name, f"{tables.name}_classes")))
+            f"#if LABIAL_HEAR_UNITS_MAX >= {tables.units}\n\n", "\n#endif\n",
+            "\n#else\n\n/* Any use is an error that says what the model needs. */\n" + "".join(
+                f"#define {name} {tables.name}_needs_a_build_with_LABIAL_HEAR_UNITS_MAX_{tables.units}\n"
+                for name in (tables.name, f"{tables.name}_classes")))
 
 
 def header(tables: HearingTables) -> str:
@@ -146,7 +140,7 @@ def header(tables: HearingTables) -> str:
     upper = tables.name.upper()
     constants = ",\n".join(f"    {name} = {number}"
                            for number, name in enumerate(constants_of(tables.name, tables.classes)))
-    opens, closes = _limit(tables)
+    opens, closes, instead = _limit(tables)
     return f"""{_comment(tables, f"{tables.name}.h - the")}#ifndef LABIAL_MODEL_{upper}_H
 #define LABIAL_MODEL_{upper}_H
 
@@ -173,7 +167,7 @@ extern const labial_hear_model_t {tables.name};
 
 /* The names of the classes; linked only when used. */
 extern const char *const {tables.name}_classes[{upper}_CLASSES];
-{_missing(tables)}{closes}
+{instead}{closes}
 #ifdef __cplusplus
 }}
 #endif
@@ -184,7 +178,7 @@ extern const char *const {tables.name}_classes[{upper}_CLASSES];
 
 def source(tables: HearingTables) -> str:
     """NAME.c: the tables."""
-    opens, closes = _limit(tables)
+    opens, closes, _ = _limit(tables)
     parts = [_comment(tables, f"{tables.name}.c - the"), f'#include "{tables.name}.h"\n']
     parts += [f"\n{opens}"[:-1]] if opens else []
     blocks = []

@@ -92,38 +92,40 @@ def false_closures(true: np.ndarray, heard: np.ndarray, classes: np.ndarray) -> 
 
 def measured(clips: Sequence[Judged]) -> Figures:
     """The figures of several clips together."""
+    if not clips:
+        return Figures(*[float("nan")] * len(Figures._fields))
     every: List[np.ndarray] = []
     seen: List[bool] = []
     false, speech = 0, 0
-    third = np.zeros((2, clips[0][0].shape[1])) if clips else np.zeros((2, 1))
+    third = np.zeros((2, clips[0][0].shape[1]))
     for true, heard, classes in clips:
         gaps, spoken = (opening(true)[:, None], opening(heard)[:, None]), classes != _SILENCE
         every.append(np.concatenate([correlation(*gaps), correlation(*(gap[spoken] for gap in gaps)),
                                      correlation(true, heard)]))
         seen += closures(heard, classes)
         false += false_closures(true, heard, classes)
-        speech += int((classes != _SILENCE).sum())
-        for row, frames in enumerate((true, heard)):
-            third[row] += (np.diff(np.asarray(frames, float), n=3, axis=0) ** 2).sum(axis=0)
-    if not clips:
-        return Figures(*[float("nan")] * len(Figures._fields))
-    found = np.array(every)
-    each = [float(column[np.isfinite(column)].mean()) if np.isfinite(column).any() else float("nan")
-            for column in found.T]
+        speech += int(spoken.sum())
+        third += [(np.diff(np.asarray(frames, float), n=3, axis=0) ** 2).sum(axis=0) for frames in (true, heard)]
+    each = list(map(_mean, np.array(every).T))
     moving = third[0] > 1e-9
-    return Figures(
-        each[0], float(np.nanmean(each[2:])) if np.isfinite(each[2:]).any() else float("nan"),
-        float(np.mean(seen)) if seen else float("nan"), false * RATE / speech if speech else float("nan"),
-        float(np.sqrt(third[1][moving] / third[0][moving]).mean()) if moving.any() else float("nan"), each[1])
+    return Figures(each[0], _mean(each[2:]), _mean(seen), false * RATE / speech if speech else float("nan"),
+                   _mean(np.sqrt(third[1][moving] / third[0][moving])), each[1])
+
+
+def _mean(values: Sequence[float]) -> float:
+    """The mean of those that are numbers; NaN without any."""
+    known = np.asarray(values, dtype=float)
+    known = known[np.isfinite(known)]
+    return float(known.mean()) if len(known) else float("nan")
 
 
 def pooled(figures: Sequence[Figures], shares: Sequence[float]) -> Figures:
     """The mean of several, weighed by `shares`; what is NaN does not count."""
-    values, weights = np.array(figures, dtype=float), np.array(shares, dtype=float)[:, None]
-    known = np.isfinite(values) * weights
+    values = np.array(figures, dtype=float)
+    known = np.isfinite(values) * np.array(shares, dtype=float)[:, None]
     total = known.sum(axis=0)
-    mean = (np.where(np.isfinite(values), values, 0.0) * known).sum(axis=0) / np.where(total > 0, total, 1.0)
-    return Figures(*(float(item) for item in np.where(total > 0, mean, np.nan)))
+    mean = (np.nan_to_num(values) * known).sum(axis=0) / np.where(total > 0, total, np.nan)
+    return Figures(*mean.tolist())
 
 
 def delay(clips: Sequence[Judged], most: int = 6) -> int:
@@ -136,9 +138,8 @@ def delay(clips: Sequence[Judged], most: int = 6) -> int:
 
     means = []
     for lag in range(-most, most + 1):
-        values = [shifted(true, heard, lag) for true, heard, _ in clips if len(true) > 2 * most]
-        finite = [value for value in values if np.isfinite(value)]
-        means.append(float(np.mean(finite)) if finite else -2.0)
+        mean = _mean([shifted(true, heard, lag) for true, heard, _ in clips if len(true) > 2 * most])
+        means.append(-2.0 if np.isnan(mean) else mean)
     return int(np.argmax(means)) - most
 
 
@@ -161,18 +162,16 @@ def choose(model: HearingModel, folders: Sequence[Prepared], shares: np.ndarray)
     """The best edges by the takes of `folders`, which count by their `shares`."""
     heard = [[(run(model, features), frames, classes) for features, frames, classes in _takes(item)]
              for item in folders]
-    best, chosen = -np.inf, None
+    choices = []
     for begin, width in itertools.product(_BEGIN, _WIDTH):
-        edges = (begin, begin + width)
-        tried = replace(model, close_from=edges[0], close_to=edges[1])
+        tried = replace(model, close_from=begin, close_to=begin + width)
         reached = pooled([measured([(frames, smoothed(closed(tried, told).faps), classes)
                                     for told, frames, classes in item]) for item in heard], shares.tolist())
-        value = worth(reached)
-        if value > best:
-            best, chosen = value, Choice(edges, reached)
-    if chosen is None:
+        if worth(reached) > -np.inf:
+            choices.append(Choice((begin, begin + width), reached))
+    if not choices:
         raise ValueError("no takes are held out")
-    return chosen
+    return max(choices, key=lambda choice: worth(choice.reached))
 
 
 def worth(reached: Figures) -> float:

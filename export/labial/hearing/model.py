@@ -118,9 +118,10 @@ class HearingModel:
 
 
 _TEXT = ("memories", "classes", "close_from", "close_to", "attribution", "training")
-#: Arrays, and those of which each block has one: ``dense_0`` and so on.
-_ARRAYS = ("last", "last_bias", "class_weight", "class_bias", "closed_weight", "closed_bias", "fap_weight", "fap_bias",
-           "fap_mean", "fap_scale", "closed", "closing")
+#: Arrays with their shapes, F standing for channels; and those of which each block has one: ``dense_0`` and so on.
+_ARRAYS = {"last": "HH", "last_bias": "H", "class_weight": "CH", "class_bias": "C", "closed_weight": "H",
+           "closed_bias": "1", "fap_weight": "FH", "fap_bias": "F", "fap_mean": "F", "fap_scale": "F", "closed": "F",
+           "closing": "F"}
 _OF_BLOCKS = ("dense", "bias", "memory")
 
 
@@ -157,11 +158,8 @@ def _shapes(model: HearingModel, units: int, classes: int) -> List[Tuple[str, np
     for k, memory in enumerate(model.memories):
         result += [(f"dense_{k}", model.dense[k], (units, units if k else INPUTS)),
                    (f"bias_{k}", model.bias[k], (units,)), (f"memory_{k}", model.memory[k], (units, memory.taps))]
-    shapes = {"last": (units, units), "last_bias": (units,), "class_weight": (classes, units),
-              "class_bias": (classes,), "closed_weight": (units,), "closed_bias": (1,),
-              "fap_weight": (CHANNELS, units), "fap_bias": (CHANNELS,), "fap_mean": (CHANNELS,),
-              "fap_scale": (CHANNELS,), "closed": (CHANNELS,), "closing": (CHANNELS,)}
-    result += [(name, getattr(model, name), shape) for name, shape in shapes.items()]
+    sizes = {"H": units, "C": classes, "F": CHANNELS, "1": 1}
+    result += [(name, getattr(model, name), tuple(sizes[axis] for axis in shape)) for name, shape in _ARRAYS.items()]
     return [(name, np.asarray(value), shape) for name, value, shape in result]
 
 
@@ -204,10 +202,6 @@ def load(path: PathLike) -> HearingModel:
         raise ModelError(f"{os.fspath(path)}: not a model of hearing: {error}") from None
 
 
-def _is_memory(row: object) -> bool:
-    return isinstance(row, list) and len(row) == 3 and all(type(item) is int for item in row)
-
-
 def _texts(data: bytes) -> Dict[str, Any]:
     """The content of model.json, with its types checked."""
     try:
@@ -215,7 +209,7 @@ def _texts(data: bytes) -> Dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise ModelError(f"model.json: not JSON ({str(error)[:80]})") from None
     expect(isinstance(text, dict) and text.get("kind") == KIND, f"model.json: its kind is not {KIND}")
-    version = text["format"] if "format" in text else None
+    version = text.get("format")
     expect(version == FORMAT, f"format {version!r:.40}, but this version of labial reads format {FORMAT}")
     for name in _TEXT:
         expect(name in text, f"model.json: no {name}")
@@ -225,7 +219,8 @@ def _texts(data: bytes) -> Dict[str, Any]:
     classes, memories = text["classes"], text["memories"]
     expect(isinstance(classes, list) and all(isinstance(name, str) for name in classes),
             "model.json: classes is not a list of texts")
-    expect(isinstance(memories, list) and len(memories) <= BLOCKS_MAX and all(map(_is_memory, memories)),
+    expect(isinstance(memories, list) and len(memories) <= BLOCKS_MAX and all(
+            isinstance(row, list) and [type(item) for item in row] == [int] * 3 for row in memories),
             f"model.json: memories is not a list of up to {BLOCKS_MAX} rows of three whole numbers")
     expect(isinstance(text["training"], dict), "model.json: training is not an object")
     values = {name: text[name] for name in _TEXT}

@@ -97,10 +97,7 @@ def prepare(clips: Sequence[Clip], takes: int, seed: int, cache: PathLike, jobs:
     return result
 
 
-_Take = Tuple[np.ndarray, np.ndarray, np.ndarray]
-
-
-def prepare_clip(clip: Clip, takes: int, seed: int) -> List[_Take]:
+def prepare_clip(clip: Clip, takes: int, seed: int) -> List[Tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Energies, frames and classes of each take of a clip, as in :class:`Prepared`."""
     from labial.sound.samples import read_sound
 
@@ -111,7 +108,10 @@ def prepare_clip(clip: Clip, takes: int, seed: int) -> List[_Take]:
         before, after = (float(random.uniform(*_PAUSE)) for _ in range(2))
         padded, segments = with_pauses(samples, clip.segments, before, after)
         distortion = drawn(random) if take else Distortion(peak=float(random.uniform(-25, -3)))
-        found.append(_take(distorted(padded, distortion, random), targets.durations(segments, distortion.speed)))
+        sound, timings = distorted(padded, distortion, random), targets.durations(segments, distortion.speed)
+        count = frames_of(len(sound))
+        frames = np.clip(np.round(targets.frames(timings, count)), -32768, 32767).astype(np.int16)
+        found.append((log_energies(sound).astype(np.float16), frames, targets.classes(timings, count)))
     return found
 
 
@@ -125,13 +125,6 @@ def with_pauses(samples: np.ndarray, segments: Sequence[Segment], before: float,
     return padded, [Segment(0.0, shift, SPEECH.silence), *moved]
 
 
-def _take(sound: np.ndarray, timings: Sequence[Tuple[str, int]]) -> _Take:
-    count = frames_of(len(sound))
-    frames = targets.frames(timings, count)
-    return (log_energies(sound).astype(np.float16), np.clip(np.round(frames), -32768, 32767).astype(np.int16),
-            targets.classes(timings, count))
-
-
 def _key(clips: Sequence[Clip], takes: int, seed: int) -> str:
     """A name for what `prepare` makes: of the sounds' names, sizes and times, their segments, the voice whose frames
     are learned, and the options."""
@@ -140,14 +133,10 @@ def _key(clips: Sequence[Clip], takes: int, seed: int) -> str:
         status = os.stat(clip.sound)
         labels = [[round(item.start, 4), round(item.end, 4), item.label] for item in clip.segments]
         rows.append([os.path.basename(clip.sound), status.st_size, status.st_mtime_ns, labels])
-    text = json.dumps([_VERSION, takes, seed, CHANNELS, BANDS, _voice(), rows])
-    return hashlib.sha256(text.encode("utf-8")).hexdigest()[:24]
-
-
-def _voice() -> str:
-    """A name for the voice whose frames are learned: of the frames of all its phonemes."""
     said = [(phoneme, 5 * targets.FRAME_MS) for phoneme in SPEECH.phonemes]
-    return hashlib.sha256(targets.frames(said, 5 * len(said)).tobytes()).hexdigest()
+    voice = hashlib.sha256(targets.frames(said, 5 * len(said)).tobytes()).hexdigest()
+    text = json.dumps([_VERSION, takes, seed, CHANNELS, BANDS, voice, rows])
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()[:24]
 
 
 @dataclass(frozen=True)
@@ -180,17 +169,11 @@ def lesson(part: Prepared, teacher: Optional[HearingModel] = None, share: float 
             frames[at] = np.rint((1 - share) * frames[at] + share * told.faps)
         if share == 1:
             classes = likely.argmax(axis=1).astype(np.uint8)
-    return Lesson(part.energies, frames, classes, likely, closed, _weight(classes))
-
-
-def _weight(classes: np.ndarray) -> np.ndarray:
-    """(T,) float16: see the top of this module."""
-    number = {name: k for k, name in enumerate(CLASSES)}
-    pressed = _around(classes == number[CLOSED], _NEAR)
-    silence = classes == number["SIL"]
-    weight = np.where(np.isin(classes, [number["T"], number["F"]]), _RIVALS, np.where(silence, _SILENCE, 1.0))
-    weight = np.where(pressed, np.where(_around(silence, _NEXT), _EDGES, _PRESSED), weight)
-    return weight.astype(np.float16)
+    pressed, silence = _around(classes == CLASSES.index(CLOSED), _NEAR), classes == CLASSES.index("SIL")
+    rivals = np.isin(classes, [CLASSES.index("T"), CLASSES.index("F")])
+    weight = np.select([pressed & _around(silence, _NEXT), pressed, rivals, silence],
+                       [_EDGES, _PRESSED, _RIVALS, _SILENCE], 1.0)
+    return Lesson(part.energies, frames, classes, likely, closed, weight.astype(np.float16))
 
 
 def _around(where: np.ndarray, reach: int) -> np.ndarray:
