@@ -87,17 +87,12 @@ def read_laugh(path: PathLike, phone_set: PhoneSet = LAUGHTER) -> Optional[Tuple
     airflow = read_segments(path, "textgrid", number=2)
     if any(item.label.lower() == SPEECH_TAG for item in airflow):
         return None
-    symbols = []
+    flows, symbols = [item for item in airflow if item.label.lower() in ("e", "i")], []
     for item in marks:
-        breath = not item.label and _airflow(item, airflow) >= 0.5 * item.duration
+        flowing = sum(max(0.0, min(item.end, flow.end) - max(item.start, flow.start)) for flow in flows)
+        breath = not item.label and flowing >= 0.5 * item.duration
         symbols.append(SourceSegment(item.start, item.end, "ne" if breath else item.label))
     return phoneme_segments(path, symbols, phone_set)
-
-
-def _airflow(item: Segment, airflow: Sequence[Segment]) -> float:
-    """Seconds of `item` in which air flows."""
-    flows = (other for other in airflow if other.label.lower() in ("e", "i"))
-    return sum(max(0.0, min(item.end, other.end) - max(item.start, other.start)) for other in flows)
 
 
 class Resampled(NamedTuple):
@@ -194,15 +189,13 @@ def resample(episode: Episode, fps: int) -> Resampled:
         raise LabialError(f"episode {episode.name} has no segments")
     origin = episode.segments[0].start
     # The nearest integer, halves up, also where binary fractions fall just short of a half.
-    ends = [int(np.floor((segment.end - origin) * fps + 0.5 + 1e-6)) for segment in episode.segments]
-    counts = np.diff([0, *ends]).astype(np.int64)
-    total = ends[-1]
+    ends = np.floor((np.array([segment.end for segment in episode.segments]) - origin) * fps + 0.5 + 1e-6).astype(int)
+    counts, total = np.diff(ends, prepend=0), int(ends[-1])
     if total == 0:
         raise LabialError(f"episode {episode.name} is shorter than a frame")
+    moments = np.array([(segment.start + segment.end) / 2 if segment.apex is None else segment.apex
+                        for segment in episode.segments])
+    first = ends - counts
+    apexes = np.clip(np.floor((moments - origin) * fps + 1e-6).astype(int), first, first + np.maximum(counts, 1) - 1)
     frames = sampled(episode.times, episode.frames, fps, total, origin)
-    apexes = []
-    for segment, first, count in zip(episode.segments, np.cumsum(counts) - counts, counts):
-        moment = (segment.start + segment.end) / 2 if segment.apex is None else segment.apex
-        frame = min(max(int(np.floor((moment - origin) * fps + 1e-6)), int(first)), int(first + max(count, 1)) - 1)
-        apexes.append(min(frame, total - 1))
-    return Resampled(frames, counts, np.array(apexes, dtype=np.int64))
+    return Resampled(frames, counts, np.minimum(apexes, total - 1))

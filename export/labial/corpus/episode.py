@@ -82,21 +82,17 @@ class Episode:
         return found
 
 
-# ---- Mouths whose two sides move alike -------------------------------------------------------------------------------
-
-
 def with_even_sides(corpus: Iterable[Episode]) -> List[Episode]:
     """The episodes with the channels of both sides at their mean. Where only one side is learnt from, both are it.
     Phonemes ask the same of both sides of a mouth. What a talker's sides do differently is his own, and twice as much
     is learnt of their mean as of either."""
-    return [_even(item) for item in corpus]
-
-
-def _even(item: Episode) -> Episode:
-    frames, left_out = item.frames.copy(), item.source.left_out
-    for left, right in SIDES:
-        own = [side for side in (left, right) if side not in left_out] or [left, right]
-        frames[:, left] = frames[:, right] = frames[:, own].mean(axis=1)
-        if len(own) == 1:
-            left_out = left_out - {left, right}
-    return replace(item, frames=frames, source=replace(item.source, left_out=left_out))
+    episodes = []
+    for item in corpus:
+        frames, left_out = item.frames.copy(), item.source.left_out
+        for left, right in SIDES:
+            own = [side for side in (left, right) if side not in left_out] or [left, right]
+            frames[:, left] = frames[:, right] = frames[:, own].mean(axis=1)
+            if len(own) == 1:
+                left_out = left_out - {left, right}
+        episodes.append(replace(item, frames=frames, source=replace(item.source, left_out=left_out)))
+    return episodes

@@ -16,7 +16,7 @@ import os
 import unicodedata
 from dataclasses import replace
 from functools import cache
-from itertools import accumulate
+from itertools import accumulate, zip_longest
 from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
@@ -58,7 +58,7 @@ def read_service(path: PathLike, name: str, how: Pronunciation = PLAIN) -> List[
         raise DataError(path, None, f"{service.title} times nothing here{advice}")
     if kind in ("words", "characters"):
         return checked(path, _from_words(path, items, kind, how))
-    return checked(path, _from_visemes(items, kind) if kind in VISEMES else phoneme_segments_of(items, kind))
+    return checked(path, _from_visemes(items, VISEMES[kind]) if kind in VISEMES else phoneme_segments_of(items, kind))
 
 
 def _all(messages: Sequence[Tuple[Optional[str], Told]], times: str) -> List[Timed]:
@@ -123,23 +123,20 @@ def _from_words(path: PathLike, items: Sequence[Timed], kind: str, how: Pronunci
             for (label, _), start, end in zip(timings, ends, ends[1:])]
 
 
-def _from_visemes(marks: Sequence[Timed], kind: str) -> List[SourceSegment]:
+def _from_visemes(marks: Sequence[Timed], table: Dict[str, str]) -> List[SourceSegment]:
+    """The phoneme of each viseme, or of two that stand for one."""
+    names, found = [mark.text for mark in marks], []
     ends = [*(mark.start for mark in marks[1:]), marks[-1].start + LAST_VISEME]
-    return [SourceSegment(marks[first].start, ends[last], phoneme, line=marks[first].place.line, labels="arpabet")
-            for (first, last), phoneme in stand_ins([mark.text for mark in marks], kind)]
-
-
-def stand_ins(names: Sequence[str], kind: str) -> List[Tuple[Tuple[int, int], str]]:
-    """The phoneme of each viseme or pair of visemes, with the first and the last one that it stands for."""
-    table, found = VISEMES[kind], []
     at = 0
     while at < len(names):
-        end = at + (" ".join(names[at : at + 2]) in table and at + 1 < len(names))
-        found.append(((at, end), table[" ".join(names[at : end + 1])]))
-        at = end + 1
+        count = 2 if names[at + 1 :] and f"{names[at]} {names[at + 1]}" in table else 1
+        phoneme = table[" ".join(names[at : at + count])]
+        found.append(SourceSegment(marks[at].start, ends[at + count - 1], phoneme, line=marks[at].place.line,
+                                   labels="arpabet"))
+        at += count
     vowels = set(VOWELS.split()) - {"UW"}
-    return [(place, "W" if phoneme == "UW" and following in vowels else phoneme)
-            for (place, phoneme), following in zip(found, [phoneme for _, phoneme in found[1:]] + [""])]
+    return [replace(item, label="W") if item.label == "UW" and after and after.label in vowels else item
+            for item, after in zip_longest(found, found[1:])]
 
 
 # ---- Sounds
@@ -155,7 +152,8 @@ def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
         last = result[-1] if result and result[-1].label else None
         if label in _STRESS:
             begin = token.start if begin is None else begin
-        elif last and begin is None and _is_mark(label):
+        elif last and begin is None and label and all(
+                unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label):  # length, release, nasality, tone
             result[-1] = _grown(last, token.end, (last.label + label)[:LABEL])
         elif last and begin is None and joins and last.label + label in TABLE["pairs"] and token.start <= last.end:
             result[-1] = _grown(last, token.end, last.label + label)
@@ -177,11 +175,6 @@ def _phonemes_of(tokens: Sequence[SourceSegment]) -> List[SourceSegment]:
 
 def _grown(segment: SourceSegment, end: float, label: str) -> SourceSegment:
     return SourceSegment(segment.start, end, label, line=segment.line, labels=segment.labels)
-
-
-def _is_mark(label: str) -> bool:
-    """Whether `label` only modifies the phoneme before it: length, release, nasality, tone."""
-    return bool(label) and all(unicodedata.category(c) in ("Lm", "Mn", "Sk", "Nd") for c in label)
 
 
 def names() -> Tuple[str, ...]:
@@ -216,7 +209,9 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
     segments = read_service(path, form, how) if form in services.SERVICES else read_segments(path, form, tier)
     if not offset:
         return segments
-    moved = _moved(segments, offset)
+    moved = [replace(segment, start=max(0.0, segment.start + offset), end=segment.end + offset,
+                     apex=None if segment.apex is None else max(0.0, segment.apex + offset))
+             for segment in segments if segment.end + offset > 0.0]
     if not moved:
         raise DataError(path, None, f"an offset of {1000 * offset:g} ms leaves no segments")
     return moved
@@ -225,13 +220,6 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
 def stored(path: PathLike) -> PathLike:
     """What stands in for a file that is read several times, as a pipe cannot be: its bytes."""
     return path if isinstance(path, (Content, Parsed)) else Content(read_bytes(path), os.fspath(path))
-
-
-def _moved(segments: List[SourceSegment], offset: float) -> List[SourceSegment]:
-    """Segments with `offset` seconds added to their times, from 0 on."""
-    return [replace(segment, start=max(0.0, segment.start + offset), end=segment.end + offset,
-                    apex=None if segment.apex is None else max(0.0, segment.apex + offset))
-            for segment in segments if segment.end + offset > 0.0]
 
 
 def as_lab(path: PathLike, labels: str = AUTO, source: Optional[str] = None, how: Pronunciation = PLAIN,

@@ -166,7 +166,9 @@ def read_iemocap(path: PathLike, phone_set: PhoneSet = SPEECH,
     reasons: List[DataError] = [] if refused is None else refused
     dialogs: Dict[str, List[Path]] = {}
     for file in sorted(Path(path).glob("Session*/sentences/MOCAP_rotated/*/*.txt")):
-        if not file.name.startswith(".") and not _is_listener(file):
+        names = re.match(r"Ses\d+([FM])_.*_([FM])[^_]*$", file.stem)
+        is_listener = names is not None and names[1] != names[2]
+        if not file.name.startswith(".") and not is_listener:
             dialogs.setdefault(file.parent.name, []).append(file)
     episodes = [episode for _, files in sorted(dialogs.items()) for episode in _read_dialog(files, phone_set, reasons)]
     if not episodes:
@@ -211,11 +213,6 @@ def _read_dialog(files: List[Path], phone_set: PhoneSet, refused: List[DataError
         except ValueError as error:
             refused.append(DataError(item.path, None, str(error)))
     return episodes
-
-
-def _is_listener(file: Path) -> bool:
-    match = re.match(r"Ses\d+([FM])_.*_([FM])[^_]*$", file.stem)
-    return match is not None and match.group(1) != match.group(2)
 
 
 def _median(markers: np.ndarray) -> np.ndarray:

@@ -184,26 +184,18 @@ _ALIKE = {
 }
 
 
-def _spellings(phoneme: str) -> str:
-    bare = [phoneme, phoneme.lower()]
-    return " ".join(bare + [f"{name}{stress}" for name in bare if phoneme in VOWELS.split() for stress in (0, 1, 2)])
-
-
 _LAUGHTER_CLASSES = {
-    "silence": "silence",
-    "nose": "ne nasal",  # air goes through the nose, lips rest on each other
-    "stop": "click plosive",
-    "fricative": "fricative",
-    "spread": "ic e",
-    "open": "a cackle",
-    "rounded": "o",
+    "silence": "silence", "nose": "ne nasal",  # air goes through the nose, lips rest on each other
+    "stop": "click plosive", "fricative": "fricative", "spread": "ic e", "open": "a cackle", "rounded": "o",
     "throat": "grunt",
     "soft": " ".join(soft for soft, _ in LAUGHTER_GRADES.values()),
     "loud": " ".join(loud for _, loud in LAUGHTER_GRADES.values()),
 }
 
-_ARPABET_LABELS = {label: f"{_spellings(label)} {SPEECH_LABELS['arpabet'].get(label, '')}"
-                   for label in ("SIL", *ARPABET)}
+_ARPABET_LABELS = {label: " ".join([
+    label, label.lower(), *(f"{name}{stress}" for name in (label, label.lower()) for stress in (0, 1, 2)
+                            if label in VOWELS.split()), SPEECH_LABELS["arpabet"].get(label, "")])
+    for label in ("SIL", *ARPABET)}
 #: English speech: 39 ARPABET phonemes and silence.
 SPEECH = _phone_set("speech", _SPEECH_CLASSES, f"{VOWELS} P B M", " ".join(("SIL", *ARPABET)),
                     {**SPEECH_LABELS, "arpabet": _ARPABET_LABELS})

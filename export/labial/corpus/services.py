@@ -190,7 +190,8 @@ class _Tell:
         times = [Timed(self.letters.get(text, text), start + later, None if end is None else end + later, place)
                  for text, start, end, place in rows if self._believed(text, start, end, place, odd)]
         if self.hold:
-            times = [one._replace(end=_held(one, after, self.hold))
+            # An item lasts until the next one if the gap is short.
+            times = [one._replace(end=after) if one.end is not None and one.end >= after - self.hold else one
                      for one, after in zip(times, [*(item.start for item in times[1:]), math.inf])]
         return times
 
@@ -204,7 +205,10 @@ class _Tell:
         for place, (name, depth, _) in enumerate(path):
             after: List[Entry] = []
             for one in found:
-                for value in _flat(one.plain.get(name), depth):
+                values: List[Any] = [one.plain.get(name)]
+                for _ in range(depth):  # the items of lists in lists; what is no list is one item
+                    values = [item for listed in values for item in (listed if is_list(listed) else [listed])]
+                for value in values:
                     inner = one.inner(value, len(after) + 1 if depth else None)
                     if inner is not None:
                         after.append(inner)
@@ -339,19 +343,6 @@ class _Tell:
 
 #: Text, beginning, end and place.
 _Row = Tuple[str, float, Optional[float], Entry]
-
-
-def _flat(value: Any, depth: int) -> List[Any]:
-    """The items of lists in lists; what is no list is one item."""
-    found = [value]
-    for _ in range(depth):
-        found = [item for one in found for item in (one if is_list(one) else [one])]
-    return found
-
-
-def _held(item: Timed, after: float, hold: float) -> Optional[float]:
-    """The end of an item which lasts until the next one if the gap is short."""
-    return item.end if item.end is None or after == math.inf or item.end < after - hold else after
 
 
 class Service:

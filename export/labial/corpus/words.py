@@ -250,15 +250,13 @@ def longest_first(known: Mapping[str, Sequence[str]]) -> Dict[str, Sequence[str]
 
 def stretches_of(texts: Iterable[str], known: Container[str], language: str) -> List[str]:
     """What these texts' words are looked up by, without those that are known."""
-    return list(dict.fromkeys(item for text in texts for item in _stretches(text, language) if item not in known))
-
-
-def _stretches(text: str, language: str) -> List[str]:
-    """The stretches of a text. Marks and joiners belong to the letter before them: without them Hindi falls apart."""
-    plain = "".join("x" if character > "\x7f" and (
-        unicodedata.category(character)[0] == "M" or character in "\u200c\u200d") else character for character in text)
-    pattern = _STRETCH if language == ENGLISH else _SIGNED
-    return [text[found.start() : found.end()] for found in pattern.finditer(plain)]
+    pattern, found = _STRETCH if language == ENGLISH else _SIGNED, []
+    for text in texts:
+        # Marks and joiners belong to the letter before them: without them Hindi falls apart.
+        plain = "".join("x" if unicodedata.category(character)[0] == "M" or character in "\u200c\u200d" else character
+                        for character in text)
+        found += [text[item.start() : item.end()] for item in pattern.finditer(plain)]
+    return list(dict.fromkeys(item for item in found if item not in known))
 
 
 def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from typing import Dict, Iterable, List, Sequence
+from typing import Dict, Iterable, List, Sequence, Tuple
 
 from labial import __version__
 from labial.errors import ModelError
@@ -74,3 +74,35 @@ def rows(values: Iterable[object]) -> str:
     return textwrap.fill(", ".join(str(value).replace(" ", "\u00a0") for value in values), width=118,
                          initial_indent="    ", subsequent_indent="    ",
                          break_on_hyphens=False).replace("\u00a0", " ")
+
+
+def array(kind: str, name: str, values: Iterable[object]) -> str:
+    """A constant array of a file's own."""
+    items = list(values)
+    return f"static const {kind} {name}[{len(items)}] = {{\n{rows(items)}\n}};\n"
+
+
+def exported_header(comment: str, name: str, prefix: str, include: str, form: Tuple[str, int], body: str) -> str:
+    """NAME.h of a table NAME, with the guard PREFIX_NAME_H, which includes a header of the library; `form` is the
+    library's constant for the format of such tables, and the number that it must have."""
+    guard = f"{prefix}_{name.upper()}_H"
+    return f"""{comment}#ifndef {guard}
+#define {guard}
+
+#include "{include}"
+
+#if {form[0]} != {form[1]}
+#error "{name} was exported for another version of Labial: run labial export again."
+#endif
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+{body}
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""

@@ -17,7 +17,7 @@ import stat
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
-from typing import IO, Any, Callable, Iterator, List, Optional
+from typing import IO, Any, Callable, Iterator, List, Mapping, Optional
 
 from labial.errors import LabialError, PathLike
 
@@ -124,6 +124,14 @@ def folder(path: PathLike, name: Optional[PathLike] = None) -> Iterator[Path]:
         for item in made:
             with suppress(OSError):  # not empty after success
                 item.rmdir()
+
+
+def write_files(directory: PathLike, files: Mapping[str, str]) -> List[Path]:
+    """Writes texts, by the names of their files, into a folder as :func:`folder` does; returns their paths."""
+    with folder(directory) as made:
+        for name, text in files.items():
+            (made / name).write_bytes(text.encode())
+    return [Path(directory) / name for name in files]
 
 
 def check(path: Optional[PathLike], *suffixes: str) -> None:

@@ -115,8 +115,7 @@ def read(folder: PathLike, cache: PathLike, jobs: int = 1,
     their text does not fit, and texts that are not English words, are left out with a warning. `told` receives how many
     sounds are done, and how many there are. Raises DataError as :func:`find`, for timings that cannot be read, and if
     no clip remains."""
-    found = find(folder)
-    work = [(sound, item, _kept(cache, sound, item)) for sound, item in found]
+    work = [(sound, item, _kept(cache, sound, item)) for sound, item in find(folder)]
     missing = [row for row in work if row[1].text is not None and not os.path.exists(row[2])]
     if missing:
         with needs("aligning sounds with their texts", "hear"):
@@ -127,23 +126,17 @@ def read(folder: PathLike, cache: PathLike, jobs: int = 1,
             warnings.warn(f"{problem}; it is left out", stacklevel=2)
         if told:
             told(count, len(work))
-    clips = [clip for clip in map(_clip, work) if clip is not None]
+    # An alignment is an empty file where the text does not fit.
+    timings = [(sound, item.path if item.text is None else kept) for sound, item, kept in work
+               if item.text is None or os.path.getsize(kept)]
+    clips = [Clip(sound, phoneme_segments(path, read_timings(path), SPEECH)) for sound, path in timings]
     if not clips:
         raise DataError(folder, None, "no sound fits its text")
     return clips
 
 
-_Row = Tuple[str, Told, str]
 Item = TypeVar("Item")
 Found = TypeVar("Found")
-
-
-def _clip(row: _Row) -> Optional[Clip]:
-    sound, item, kept = row
-    path = item.path if item.text is None else kept
-    if item.text is not None and os.path.getsize(path) == 0:  # did not fit
-        return None
-    return Clip(sound, phoneme_segments(path, read_timings(path), SPEECH))
 
 
 def _kept(cache: PathLike, sound: str, item: Told) -> str:
@@ -162,13 +155,13 @@ def in_processes(work: Callable[[Item], Found], items: Sequence[Item], jobs: int
         yield from pool.map(work, items, chunksize=chunk)
 
 
-def _align(row: _Row) -> str:
+def _align(row: Tuple[str, Told, str]) -> str:
     """Aligns a sound and keeps the result, an empty file if the text does not fit; returns the problem, or ""."""
     from labial.sound.align import aligned
     from labial.sound.recogniser import LOW
 
     sound, item, kept = row
-    problem, lab = "", ""
+    problem = lab = ""
     where = item.path if item.line is None else f"{item.path}:{item.line}"
     try:
         with warnings.catch_warnings():

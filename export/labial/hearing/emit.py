@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Iterable, List, Sequence, Tuple
+from typing import List, Tuple
 
 import numpy as np
 
 from labial import __version__
-from labial.errors import ModelError, PathLike
-from labial.files.c import block_comment, check_name, constants_of, rows
-from labial.files.outputs import folder, writing
+from labial.errors import PathLike, expect
+from labial.files.c import array, block_comment, check_name, constants_of, exported_header, rows
+from labial.files.outputs import write_files
 from labial.hearing import integer
 from labial.hearing.convert import RATES
 from labial.hearing.network import SMOOTHING
@@ -21,11 +21,6 @@ from labial.hearing.quantise import FORMAT, Dense, HearingTables
 _MODEL, _BLOCK = 60, 24
 #: LABIAL_HEAR_UNITS_MAX by default.
 _UNITS_MAX = 128
-
-
-def _array(kind: str, name: str, values: Iterable[int]) -> str:
-    values = [int(value) for value in values]
-    return f"static const {kind} {name}[{len(values)}] = {{\n{rows(values)}\n}};\n"
 
 
 # ---- The tables of the front end -------------------------------------------------------------------------------------
@@ -41,10 +36,10 @@ def features_table() -> str:
     """lib/hear_features_table.h."""
     bins = slice(integer.FIRST_BIN, integer.LAST_BIN + 1)
     return _table_header("hear_features_table", "what turns samples into energies of bands.", "\n".join([
-        "/* A turn in 256 steps, Q15. */\n" + _array("int16_t", "sine", integer.sine_table()),
+        "/* A turn in 256 steps, Q15. */\n" + array("int16_t", "sine", integer.sine_table()),
         f"/* Where bins {integer.FIRST_BIN} to {integer.LAST_BIN} lie between the bands' edges, in 1/256. */\n"
-        + _array("uint16_t", "bin_places", integer.place_table()[bins]),
-        "/* log2 of 1 to 2, Q8. */\n" + _array("int16_t", "logarithms", integer.log_table()),
+        + array("uint16_t", "bin_places", integer.place_table()[bins]),
+        "/* log2 of 1 to 2, Q8. */\n" + array("int16_t", "logarithms", integer.log_table()),
     ]))
 
 
@@ -57,27 +52,27 @@ def convert_table() -> str:
         "static const struct {\n    uint32_t samples_per_second;\n    uint8_t reach, spacing;\n    uint16_t step;\n"
         f"}} conversions[{len(RATES)}] = {{\n{ways}\n}};\n",
         "/* The filter from its middle on, Q15, and zeros after it. */\n"
-        + _array("int16_t", "filter", integer.tap_table()),
+        + array("int16_t", "filter", integer.tap_table()),
     ]))
 
 
 def write_tables(directory: PathLike) -> None:
     """Writes both headers into `directory`, which is lib."""
-    for name, text in (("hear_features_table.h", features_table()), ("hear_convert_table.h", convert_table())):
-        with writing(Path(directory) / name, "ascii") as out:
-            out.write(text)
+    write_files(directory, {"hear_features_table.h": features_table(), "hear_convert_table.h": convert_table()})
 
 
 # ---- A model ---------------------------------------------------------------------------------------------------------
 
 
 def check_limits(tables: HearingTables) -> None:
-    """Raises ModelError for a model whose memory is longer than the library's."""
+    """Raises ModelError for a model whose memory is longer than the library's, and for the name of a class with other
+    characters than letters, digits and underscores."""
     for block in tables.blocks:
-        if not 2 <= block.memory.taps <= 16:
-            raise ModelError(f"a memory has {block.memory.taps} taps, not 2 to 16")
-    if tables.rows > 255:
-        raise ModelError(f"the memories have {tables.rows} rows together, not up to 255")
+        expect(2 <= block.memory.taps <= 16, f"a memory has {block.memory.taps} taps, not 2 to 16")
+    expect(tables.rows <= 255, f"the memories have {tables.rows} rows together, not up to 255")
+    for name in tables.classes:
+        expect(name.isascii() and name.replace("_", "").isalnum(),
+               f"the class {name!r:.40} has other characters than letters, digits and underscores")
 
 
 def grouped(dense: Dense) -> Dense:
@@ -93,8 +88,8 @@ def grouped(dense: Dense) -> Dense:
 
 def _layer(name: str, dense: Dense) -> List[str]:
     table = grouped(dense)
-    return [_array("int8_t", f"{name}_weights", table.weight.ravel()),
-            _array("int16_t", f"{name}_biases", table.bias), _array("uint8_t", f"{name}_shifts", table.shift)]
+    return [array("int8_t", f"{name}_weights", table.weight.ravel()),
+            array("int16_t", f"{name}_biases", table.bias), array("uint8_t", f"{name}_shifts", table.shift)]
 
 
 def _layer_member(name: str) -> str:
@@ -141,20 +136,7 @@ def header(tables: HearingTables) -> str:
     constants = ",\n".join(f"    {name} = {number}"
                            for number, name in enumerate(constants_of(tables.name, tables.classes)))
     opens, closes, instead = _limit(tables)
-    return f"""{_comment(tables, f"{tables.name}.h - the")}#ifndef LABIAL_MODEL_{upper}_H
-#define LABIAL_MODEL_{upper}_H
-
-#include "labial/hear.h"
-
-#if LABIAL_HEAR_MODEL_FORMAT != {FORMAT}
-#error "{tables.name} was exported for another version of Labial: run labial export again."
-#endif
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-
-#define {upper}_WORKSPACE_SIZE LABIAL_HEAR_WORKSPACE_SIZE({tables.units}, {tables.rows})
+    body = f"""#define {upper}_WORKSPACE_SIZE LABIAL_HEAR_WORKSPACE_SIZE({tables.units}, {tables.rows})
 #define {upper}_CLASSES {len(tables.classes)}
 
 /* Lip classes, each named by a phoneme that stands for it. */
@@ -167,13 +149,9 @@ extern const labial_hear_model_t {tables.name};
 
 /* The names of the classes; linked only when used. */
 extern const char *const {tables.name}_classes[{upper}_CLASSES];
-{instead}{closes}
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
+{instead}{closes}"""
+    return exported_header(_comment(tables, f"{tables.name}.h - the"), tables.name, "LABIAL_MODEL", "labial/hear.h",
+                           ("LABIAL_HEAR_MODEL_FORMAT", FORMAT), body)
 
 
 def source(tables: HearingTables) -> str:
@@ -184,8 +162,8 @@ def source(tables: HearingTables) -> str:
     blocks = []
     for k, block in enumerate(tables.blocks):
         name = f"block_{k}"
-        arrays = [*_layer(name, block.dense), _array("int8_t", f"{name}_taps", block.taps.ravel()),
-                  _array("uint8_t", f"{name}_tap_shifts", block.shift)]
+        arrays = [*_layer(name, block.dense), array("int8_t", f"{name}_taps", block.taps.ravel()),
+                  array("uint8_t", f"{name}_tap_shifts", block.shift)]
         parts.append(f"\n/* Block {k}. */\n" + "".join(arrays))
         blocks.append(f"    {{ {_layer_member(name)}, {name}_taps, {name}_tap_shifts, "
                       f"{', '.join(map(str, block.memory))} }}")
@@ -193,7 +171,7 @@ def source(tables: HearingTables) -> str:
     parts.append("\n/* The last layer, and the heads. */\n" + "".join(_layer("last", tables.last)))
     parts.append("".join(_layer("heads", tables.heads)))
     parts.append("\n/* Frames: mean, scale and closed lips, Q4, and how far each channel follows those, Q8. */\n")
-    parts += [_array("int16_t", name, value) for name, value in (
+    parts += [array("int16_t", name, value) for name, value in (
         ("mean", tables.mean), ("scale", tables.scale), ("closed", tables.closed), ("closing", tables.closing))]
     numbers = (("LABIAL_HEAR_MODEL_FORMAT", "format"), (tables.units, "units"), (len(tables.blocks), "blocks"),
                (len(tables.classes), "classes"), (tables.ahead, "ahead"), (tables.rows, "rows"),
@@ -202,27 +180,16 @@ def source(tables: HearingTables) -> str:
     members += [f"    {member}," for member in ("mean", "scale", "closed", "closing", "blocks", _layer_member("last"))]
     members += [f"    {_layer_member('heads')}"]
     parts.append(f"\nconst labial_hear_model_t {tables.name} = {{\n" + "\n".join(members) + "\n};\n")
-    parts.append(f"\nconst char *const {tables.name}_classes[] = {{\n{rows(_quoted(tables.classes))}\n}};\n")
+    names = [f'"{name}"' for name in tables.classes]
+    parts.append(f"\nconst char *const {tables.name}_classes[] = {{\n{rows(names)}\n}};\n")
     return "".join([*parts, closes])
-
-
-def _quoted(names: Sequence[str]) -> List[str]:
-    """Names as C strings. Raises ModelError for one with other characters than ASCII's letters, digits and _."""
-    for name in names:
-        if not name.isascii() or not name.replace("_", "").isalnum():
-            raise ModelError(f"the class {name!r:.40} has other characters than letters, digits and underscores")
-    return [f'"{name}"' for name in names]
 
 
 def write(tables: HearingTables, directory: PathLike) -> List[Path]:
     """Writes NAME.h and NAME.c into `directory`; returns their paths."""
     check_name(tables.name)
     check_limits(tables)
-    files = {f"{tables.name}.h": header(tables), f"{tables.name}.c": source(tables)}
-    with folder(directory) as made:
-        for file, text in files.items():
-            (made / file).write_bytes(text.encode())
-    return [Path(directory) / file for file in files]
+    return write_files(directory, {f"{tables.name}.h": header(tables), f"{tables.name}.c": source(tables)})
 
 
 if __name__ == "__main__":

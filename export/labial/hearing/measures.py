@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
-from typing import Dict, Iterator, List, NamedTuple, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
@@ -160,8 +160,13 @@ class Choice:
 
 def choose(model: HearingModel, folders: Sequence[Prepared], shares: np.ndarray) -> Choice:
     """The best edges by the takes of `folders`, which count by their `shares`."""
-    heard = [[(run(model, features), frames, classes) for features, frames, classes in _takes(item)]
-             for item in folders]
+    heard = []
+    for item in folders:
+        begins = np.cumsum(item.lengths)[:-1]
+        energies = np.split(item.energies.astype(np.float32), HOPS * begins)
+        takes = zip(energies, np.split(item.frames, begins), np.split(item.classes, begins))
+        heard.append([(run(model, normalise(energy).reshape(len(frames), -1)), frames, classes)
+                      for energy, frames, classes in takes if len(item.lengths)])
     choices = []
     for begin, width in itertools.product(_BEGIN, _WIDTH):
         tried = replace(model, close_from=begin, close_to=begin + width)
@@ -179,10 +184,3 @@ def worth(reached: Figures) -> float:
     correlation, closures, false, jerk = _WEIGHTS
     return (correlation * reached.opening + closures * reached.closed
             - false * max(reached.false - _FALSE, 0.0) - jerk * max(reached.jerk - _JERK, 0.0))
-
-
-def _takes(item: Prepared) -> Iterator[Tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    ends = np.cumsum(item.lengths)
-    for begin, end in zip(ends - item.lengths, ends):
-        energies = item.energies[HOPS * begin : HOPS * end].astype(np.float32)
-        yield normalise(energies).reshape(end - begin, -1), item.frames[begin:end], item.classes[begin:end]

@@ -157,12 +157,11 @@ def lesson(part: Prepared, teacher: Optional[HearingModel] = None, share: float 
     likely = np.eye(len(CLASSES), dtype=np.float16)[classes]
     closed = targets.touching(frames.astype(np.float32), classes).astype(np.float16)
     if teacher is not None:
-        ends = np.cumsum(part.lengths)
-        frames, likely, closed = frames.copy(), likely.copy(), closed.copy()
-        for begin, end in zip(ends - part.lengths, ends):
-            energies = part.energies[HOPS * begin : HOPS * end].astype(np.float32)
-            told = run(teacher, normalise(energies).reshape(end - begin, -1))
-            at = slice(begin, end)
+        frames = frames.copy()
+        for end, length in zip(np.cumsum(part.lengths), part.lengths):
+            at = slice(end - length, end)
+            energies = part.energies[HOPS * at.start : HOPS * end].astype(np.float32)
+            told = run(teacher, normalise(energies).reshape(length, -1))
             odds = np.exp(told.scores - told.scores.max(axis=1, keepdims=True))
             likely[at] = (1 - share) * likely[at] + share * odds / odds.sum(axis=1, keepdims=True)
             closed[at] = (1 - share) * closed[at] + share / (1 + np.exp(-np.clip(told.closed, -30, 30)))

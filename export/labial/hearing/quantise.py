@@ -72,15 +72,12 @@ class HearingTables:
         return held + sum(block.memory.ahead * block.memory.dilation for block in self.blocks[1:])
 
 
-def row_shifts(weight: np.ndarray) -> np.ndarray:
-    """(R,) int64, the shift of each row of weights (R, columns): the largest that keeps its weights below 128."""
-    most = np.maximum(np.abs(np.asarray(weight, dtype=np.float64)).max(axis=1), 1e-9)
-    return np.clip(np.floor(np.log2(_WEIGHT_MAX / most)), 0, _SHIFT_MAX).astype(np.int64)
-
-
 def _rows(weight: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    shift = row_shifts(weight)
-    rounded = np.rint(np.asarray(weight, dtype=np.float64) * 2.0 ** shift[:, None])
+    """Weights (R, columns) as integers, and the shift of each row, (R,): the largest that keeps them below 128."""
+    weight = np.asarray(weight, dtype=np.float64)
+    most = np.maximum(np.abs(weight).max(axis=1), 1e-9)
+    shift = np.clip(np.floor(np.log2(_WEIGHT_MAX / most)), 0, _SHIFT_MAX).astype(np.int64)
+    rounded = np.rint(weight * 2.0 ** shift[:, None])
     return np.clip(rounded, -_WEIGHT_MAX, _WEIGHT_MAX).astype(np.int64), shift
 
 

@@ -41,17 +41,11 @@ def frames(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
     return rendered.reshape(-1, CHANNELS)[:count]
 
 
-def phonemes_at(timings: Sequence[Tuple[str, int]], count: int) -> List[str]:
-    """The phoneme in the middle of each of `count` frames."""
-    ends = np.cumsum([length for _, length in timings] or [0])
-    at = np.searchsorted(ends, np.arange(count) * FRAME_MS + FRAME_MS // 2, side="right")
-    labels = [*(label for label, _ in timings), SPEECH.silence]
-    return [labels[min(int(k), len(timings))] for k in at]
-
-
 def classes(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
-    """(`count`,) uint8: the number of each frame's lip class."""
-    return np.array([_CLASS[label] for label in phonemes_at(timings, count)], dtype=np.uint8)
+    """(`count`,) uint8: the number of each frame's lip class, that of the phoneme in its middle."""
+    ends = np.cumsum([length for _, length in timings])
+    at = np.searchsorted(ends, np.arange(count) * FRAME_MS + FRAME_MS // 2, side="right")
+    return np.array([_CLASS[label] for label in (*(label for label, _ in timings), SPEECH.silence)], dtype=np.uint8)[at]
 
 
 def touching(shown: np.ndarray, found: np.ndarray) -> np.ndarray:

@@ -60,7 +60,7 @@ currency_of = _SIGNS.find
 
 def read_sum(said: Said, place: int) -> int:
     """Reads a sign of money and its number; returns the place behind them."""
-    said.context.currency, said.context.named = _SIGNS.index(said.simple[place]), False
+    said.context.currency, said.context.named = currency_of(said.simple[place]), False
     return _read_amounts(said, place + 1, place)
 
 

@@ -18,8 +18,8 @@ from typing import Iterable, List, Sequence, Tuple
 import numpy as np
 
 from labial.errors import ModelError, PathLike
-from labial.files.c import check_name, rows, written_by
-from labial.files.outputs import folder
+from labial.files.c import array, check_name, exported_header, written_by
+from labial.files.outputs import write_files
 from labial.words.alignment import phonemes_of
 from labial.words.dictionary import LETTERS, LONGEST, NOTICE, PHONEMES, letters_of
 from labial.words.tables import WordTables
@@ -72,7 +72,9 @@ def pack(tables: WordTables) -> PackedWords:
         bases.append(len(leaves))
         trees += _tree(tables, letter, own)
         leaves += own
-    labels = tuple(_label(sound) for sound in tables.sounds)
+    pairs = [(*phonemes_of(sound), 0, 0)[:2] for sound in tables.sounds]
+    vowels = (VOWEL * ends_in_vowel(sound) for sound in tables.sounds)
+    labels = tuple((first, second | vowel) for (first, second), vowel in zip(pairs, vowels))
     buckets, patches = _exceptions(tables)
     for what, size in (("the trees have", len(trees)), ("the exceptions have", len(patches))):
         if size > _BYTES:
@@ -107,11 +109,6 @@ def _tree(tables: WordTables, letter: int, own: Sequence[int]) -> bytes:
 
 def _node(question: int, kind: int, five: int) -> bytes:
     return (question << 7 | kind << 5 | five).to_bytes(2, "big")
-
-
-def _label(sound: int) -> Tuple[int, int]:
-    first, second = (*phonemes_of(sound), 0, 0)[:2]
-    return first, second | (VOWEL if ends_in_vowel(sound) else 0)
 
 
 def _exceptions(tables: WordTables) -> Tuple[Tuple[int, ...], bytes]:
@@ -160,11 +157,6 @@ FILLER = ("AH", "L")
 FORMAT = 2
 
 
-def _table(kind: str, name: str, values: Iterable[object]) -> str:
-    items = list(values)
-    return f"static const {kind} {name}[{len(items)}] = {{\n{rows(items)}\n}};\n"
-
-
 def _head(name: str, what: str) -> str:
     notice = "".join(f" * {line}".rstrip() + "\n" for line in NOTICE.splitlines())
     return written_by("export", what).replace(" */\n", f" *\n{notice} */\n")
@@ -172,29 +164,11 @@ def _head(name: str, what: str) -> str:
 
 def header(packed: PackedWords, name: str) -> str:
     """NAME.h: the tables' symbol."""
-    guard = f"LABIAL_WORDS_{name.upper()}_H"
-    return f"""{_head(name, f"{name}.h - how words sound, for labial/words.h.")}#ifndef {guard}
-#define {guard}
-
-#include "labial/words.h"
-
-#if LABIAL_WORDS_FORMAT != {FORMAT}
-#error "{name} was exported for another version of Labial: run labial export again."
-#endif
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-
-/* The tables, {packed.size + len(MILLISECONDS) + len(CLASSES)} bytes and the structure that points to them. */
-extern const labial_words_model_t {name};
-
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
+    size = packed.size + len(MILLISECONDS) + len(CLASSES)
+    body = (f"/* The tables, {size} bytes and the structure that points to them. */\n"
+            f"extern const labial_words_model_t {name};\n")
+    return exported_header(_head(name, f"{name}.h - how words sound, for labial/words.h."), name, "LABIAL_WORDS",
+                           "labial/words.h", ("LABIAL_WORDS_FORMAT", FORMAT), body)
 
 
 def source(packed: PackedWords, name: str) -> str:
@@ -202,12 +176,12 @@ def source(packed: PackedWords, name: str) -> str:
     labels = "".join(f'    "{label}\\0"\n' for label in PHONEMES)
     parts = [_head(name, f"{name}.c - how words sound, for labial/words.h."), f'#include "{name}.h"\n\n',
              "/* Phonemes: labels, milliseconds, and whether each is a vowel (1) or voiceless (2). */\n",
-             f"static const char phonemes[] =\n{labels.rstrip()};\n", _table("uint8_t", "milliseconds", MILLISECONDS),
-             _table("uint8_t", "classes", CLASSES), "\n", _table("uint16_t", "roots", packed.roots),
-             _table("uint16_t", "bases", packed.bases), _table("uint8_t", "leaves", packed.leaves),
-             _table("uint8_t", "labels", (part for label in packed.labels for part in label)),
-             _table("uint8_t", "trees", packed.trees), "\n", _table("uint16_t", "buckets", packed.buckets),
-             _table("uint8_t", "patches", packed.patches or b"\0")]
+             f"static const char phonemes[] =\n{labels.rstrip()};\n", array("uint8_t", "milliseconds", MILLISECONDS),
+             array("uint8_t", "classes", CLASSES), "\n", array("uint16_t", "roots", packed.roots),
+             array("uint16_t", "bases", packed.bases), array("uint8_t", "leaves", packed.leaves),
+             array("uint8_t", "labels", (part for label in packed.labels for part in label)),
+             array("uint8_t", "trees", packed.trees), "\n", array("uint16_t", "buckets", packed.buckets),
+             array("uint8_t", "patches", packed.patches or b"\0")]
     members = ["LABIAL_WORDS_FORMAT", str(len(PHONEMES)), f"{packed.multiplier}u", "roots", "bases", "leaves", "labels",
                "trees", "buckets", "patches", "phonemes", "milliseconds", "classes",
                f"{{ {', '.join(str(PHONEMES.index(label)) for label in FILLER)} }}"]
@@ -219,8 +193,4 @@ def source(packed: PackedWords, name: str) -> str:
 def write(packed: PackedWords, name: str, directory: PathLike) -> List[Path]:
     """Writes both files into `directory`; returns their paths."""
     check_name(name, "table of words")
-    files = {f"{name}.c": source(packed, name), f"{name}.h": header(packed, name)}
-    with folder(directory) as made:
-        for file, text in files.items():
-            (made / file).write_bytes(text.encode("ascii"))
-    return [Path(directory) / file for file in files]
+    return write_files(directory, {f"{name}.c": source(packed, name), f"{name}.h": header(packed, name)})
