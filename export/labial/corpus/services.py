@@ -137,7 +137,7 @@ def _number(value: Any, divisor: float) -> Optional[float]:
     """A value in seconds; None for what is no finite number from 0 on. A timedelta has its own unit."""
     if isinstance(value, timedelta):
         value, divisor = value.total_seconds(), 1.0
-    elif isinstance(value, bool) or not isinstance(value, Real):
+    elif type(value) not in (int, float) and (isinstance(value, bool) or not isinstance(value, Real)):
         return None
     try:
         number = float(value) / divisor
@@ -354,6 +354,8 @@ class Service:
         self.advice: str = row.get("advice", "")  #: how to ask it for timings
         self.times: str = row.get("times", "")  #: "restart", "chained" or ""
         self._marks = [[_Field(name) for name in fields] for fields in row.get("is", [])]
+        #: Names by one of which an object of it can be told.
+        self._begins = {plain_name(steps[0][0]) for fields in self._marks for steps, _, _ in fields[0].options}
         self._utterance = _Field(row["utterance"]) if "utterance" in row else None
         self._tells = [_Tell(tell) for tell in row["tells"]]
 
@@ -364,7 +366,8 @@ class Service:
 
     def told(self, item: Entry) -> bool:
         """Whether an object is one of this service."""
-        return any(all(field.found(item)[0] is not _MISSING for field in fields) for fields in self._marks)
+        return not self._begins.isdisjoint(item.plain) and any(
+            all(field.found(item)[0] is not _MISSING for field in fields) for fields in self._marks)
 
     def utterance(self, item: Entry) -> Optional[str]:
         """What identifies the utterance of a message, if anything does."""
