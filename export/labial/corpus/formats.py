@@ -21,10 +21,9 @@ from pathlib import Path
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from labial.core import lines
-from labial.corpus import services
 from labial.corpus.entries import Parsed, read_entries
 from labial.corpus.phonesets import AUTO, VOWELS
-from labial.corpus.services import KINDS, SERVICES, TABLE, VISEMES, Odd, Timed, Told
+from labial.corpus.services import KINDS, SERVICES, TABLE, VISEMES, Odd, Timed, Told, service_of
 from labial.corpus.timings import SourceSegment, checked, lab_of, phone_set_of, phoneme_segments, read_segments
 from labial.corpus.words import PLAIN, Pronunciation, Word, timings_of, words_of_characters
 from labial.errors import DataError, PathLike, StreamError
@@ -179,12 +178,7 @@ def _grown(segment: SourceSegment, end: float, label: str) -> SourceSegment:
 
 def names() -> Tuple[str, ...]:
     """Every format by its name for --from, which is that of labial-say where it has the format."""
-    return (*lines.names()[1:], *services.SERVICES)
-
-
-def titles() -> str:
-    """Every format, for messages."""
-    return f"{', '.join(lines.names()[1:])}; JSON of {', '.join(item.title for item in services.SERVICES.values())}"
+    return (*lines.names()[1:], *SERVICES)
 
 
 #: Suffixes, in small letters, of sounds and of videos, which hold a sound too.
@@ -206,7 +200,7 @@ def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciatio
     that moves before the beginning is cut off. `tier` names the tier of a TextGrid."""
     path = stored(path)
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)
-    segments = read_service(path, form, how) if form in services.SERVICES else read_segments(path, form, tier)
+    segments = read_service(path, form, how) if form in SERVICES else read_segments(path, form, tier)
     if not offset:
         return segments
     moved = [replace(segment, start=max(0.0, segment.start + offset), end=segment.end + offset,
@@ -234,7 +228,8 @@ def _told_by_content(path: PathLike) -> str:
     if not isinstance(path, Parsed) and read_text(path)[:4000].lstrip(" \t\r\n")[:1] not in ("{", "["):
         return AUTO
     entries = read_entries(path)
-    found = next((name for name in map(services.service_of, entries[:100]) if name), None)
+    found = next((name for name in map(service_of, entries[:100]) if name), None)
     if found is None:
-        raise DataError(path, None, f"no known format of phoneme timings ({titles()})")
+        titles = f"{', '.join(lines.names()[1:])}; JSON of {', '.join(item.title for item in SERVICES.values())}"
+        raise DataError(path, None, f"no known format of phoneme timings ({titles})")
     return found

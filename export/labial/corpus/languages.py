@@ -120,7 +120,6 @@ _unspeakable: Set[str] = set()
 
 
 def _say_unspeakable(word: str, language: str) -> None:
-    """Logs that a word cannot be spoken, once for each word."""
     key = f"{language} {word}"
     if key in _unspeakable or len(_unspeakable) >= _SAID_MOST:
         return

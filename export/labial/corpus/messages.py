@@ -93,7 +93,6 @@ class Messages:
         _logger.warning("%d messages told no timings: %s", self.stats.messages, problem)
 
     def _entries(self, message: Any, name: str, odd: Odd) -> List[Entry]:
-        """The objects of a message."""
         lines: List[Tuple[Optional[int], int, Any]]
         if isinstance(message, (bytes, bytearray, memoryview)):
             message = bytes(message)

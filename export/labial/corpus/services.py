@@ -200,7 +200,6 @@ class _Tell:
         return is_list(_descended(item, [(name, 0, exact) for name, _, exact in self.places[0]]))
 
     def _within(self, item: Entry, path: Sequence[Tuple[str, int, bool]], odd: Odd) -> List[Entry]:
-        """The objects at the end of a path."""
         found = [item]
         for place, (name, depth, _) in enumerate(path):
             after: List[Entry] = []

@@ -69,11 +69,6 @@ def triangles() -> np.ndarray:
     return np.maximum(1.0 - np.abs(places()[:, None] - np.arange(1, BANDS + 1)), 0.0)
 
 
-def window() -> np.ndarray:
-    """(256,) the periodic Hann window."""
-    return 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(WINDOW) / WINDOW)
-
-
 def frames_of(samples: int) -> int:
     """Frames that so many samples at `RATE` fill; the last one may be filled in part."""
     return -(-samples // FRAME)
@@ -90,7 +85,8 @@ def log_energies(sound: np.ndarray) -> np.ndarray:
     count = HOPS * frames_of(len(sound))
     before = WINDOW - HOP
     padded = extended(sound.astype(np.float32), before, count * HOP - len(sound))
-    shape, weights = window().astype(np.float32), triangles().astype(np.float32)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(WINDOW) / WINDOW)
+    shape, weights = window.astype(np.float32), triangles().astype(np.float32)
     rows: List[np.ndarray] = [np.zeros((0, BANDS), dtype=np.float32)]
     for first in range(0, count, _BLOCK):
         at = np.arange(first, min(first + _BLOCK, count))[:, None] * HOP + np.arange(WINDOW)
@@ -120,26 +116,19 @@ def levels(energies: np.ndarray, begin: float = LEVEL_BEGIN) -> np.ndarray:
     return result
 
 
-def crop_levels(energies: np.ndarray) -> np.ndarray:
-    """(..., n) the level in each hop of log2 energies (..., n, 24) that are cut out of sounds: nothing is known of what
-    was before."""
-    mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
-    fallen = DECAY * np.arange(mean.shape[-1])
-    return np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST)
-
-
 def normalise(energies: np.ndarray) -> np.ndarray:
     """Features of a sound's log2 energies (n, 24), of the same shape, float32, -2.25 .. 2.75."""
-    return relative_to(levels(energies), energies)
+    return _relative_to(levels(energies), energies)
 
 
 def normalise_crops(energies: np.ndarray) -> np.ndarray:
-    """The same of crops (..., n, 24), which begin within sounds."""
-    return relative_to(crop_levels(energies), energies)
+    """The same of crops (..., n, 24), which begin within sounds: nothing is known of what was before."""
+    mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
+    fallen = DECAY * np.arange(mean.shape[-1])
+    return _relative_to(np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST), energies)
 
 
-def relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
-    """Features of log2 energies (..., n, 24) at levels (..., n)."""
+def _relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
     return ((np.clip(energies - level[..., None], *RANGE) + OFFSET) / SCALE).astype(np.float32)
 
 

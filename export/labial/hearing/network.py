@@ -24,11 +24,6 @@ class Heard(NamedTuple):
     faps: np.ndarray  #: (T, 13) float32, FAP units
 
 
-def relu(value: np.ndarray) -> np.ndarray:
-    """Positive values; zero for the others."""
-    return np.maximum(value, 0.0)
-
-
 def remembered(y: np.ndarray, weight: np.ndarray, past: int, ahead: int, dilation: int) -> np.ndarray:
     """(T, H) a memory with weights (H, taps) over y (T, H), zeros before and after it."""
     padded = np.pad(y, ((past * dilation, ahead * dilation), (0, 0)))
@@ -40,10 +35,10 @@ def run(model: HearingModel, heard: np.ndarray) -> Heard:
     """The three heads for the features (T, 48) of all frames, without closures."""
     x = np.asarray(heard, dtype=np.float32)
     for k, memory in enumerate(model.memories):
-        y = relu(x @ model.dense[k].T + model.bias[k])
+        y = np.maximum(x @ model.dense[k].T + model.bias[k], 0.0)
         z = remembered(y, model.memory[k], *memory)
         x = z + x if k else z
-    x = relu(x @ model.last.T + model.last_bias)
+    x = np.maximum(x @ model.last.T + model.last_bias, 0.0)
     head = x @ model.fap_weight.T + model.fap_bias
     return Heard(x @ model.class_weight.T + model.class_bias, x @ model.closed_weight + model.closed_bias,
                  model.fap_mean + model.fap_scale * head)

@@ -359,16 +359,13 @@ def finished(state: _State, data: _Data, folders: Sequence[Prepared], options: O
     return made(choice.edges), choice
 
 
-def _rate(step: int, steps: int) -> float:
-    """The learning rate relative to its highest: it rises at the beginning and falls along a cosine."""
-    return min(1.0, (step + 1) / _WARM) * 0.5 * (1 + float(np.cos(np.pi * (step / steps)))) + _LEAST
-
-
 def _step(state: _State, data: _Data, pool: np.ndarray, options: Options) -> np.ndarray:
     """One step; its loss, the share of right classes and the mean squared error of frames."""
     batch = data.batch(state.random, pool)
+    # The learning rate rises at the beginning and falls along a cosine.
+    fallen = 0.5 * (1 + float(np.cos(np.pi * (state.step / options.steps))))
     for group in state.optimiser.param_groups:
-        group["lr"] = options.rate * _rate(state.step, options.steps)
+        group["lr"] = options.rate * (min(1.0, (state.step + 1) / _WARM) * fallen + _LEAST)
     *told, excess = state.learner(batch.heard, state.step >= (1 - _ROUNDED) * options.steps)
     end = -state.learner.plan.ahead - _END
     scores, lips, faps = (item[:, _BEGIN:end] for item in told)

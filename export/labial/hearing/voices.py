@@ -184,8 +184,8 @@ def _flite(name: str, texts: Sequence[str], pace: float, pitch: float) -> Iterat
     known = _said([program, "-lv"]).partition(":")[2].split()
     if name not in known:  # flite would speak with another voice
         raise LabialError(f"flite has no voice {name!r}; it has {' '.join(known)}")
-    own = {"kal": 95.0, "kal16": 95.0}.get(name)
-    height = ["--setf", f"int_f0_target_mean={own * pitch:.3f}"] if own is not None and pitch != 1.0 else []
+    is_high = name in ("kal", "kal16") and pitch != 1.0
+    height = ["--setf", f"int_f0_target_mean={95.0 * pitch:.3f}"] if is_high else []
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "said.wav")
         for text in texts:
@@ -247,8 +247,8 @@ def run(name: str, command: List[str], given: bytes = b"") -> bytes:
         done = subprocess.run(command, input=given, capture_output=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         raise LabialError(f"{name} took more than {_PATIENCE} s") from None
-    told = done.stderr.decode("utf-8", "replace").strip()
     if done.returncode != 0:
+        told = done.stderr.decode("utf-8", "replace").strip()
         raise LabialError(f"{name} failed: {told[-300:] or f'exit status {done.returncode}'}")
     return done.stdout
 
@@ -261,11 +261,11 @@ def _spoken(voice: str, text: str, path: str, ends: Sequence[Tuple[float, str]])
     """The sound at `path`, and the phonemes that end at the seconds of `ends`."""
     try:
         with wave.open(path) as sound:
-            rate, width, channels = sound.getframerate(), sound.getsampwidth(), sound.getnchannels()
+            rate, shape = sound.getframerate(), (sound.getsampwidth(), sound.getnchannels())
             content = sound.readframes(sound.getnframes())
     except (OSError, *wav.ERRORS) as error:
         raise LabialError(f"{voice} could not say {text[:40]!r}: {error}") from None
-    if width != 2 or channels != 1 or not content or not ends:
+    if shape != (2, 1) or not content or not ends:
         raise LabialError(f"{voice} could not say {text[:40]!r}")
     samples = np.frombuffer(content, "<i2").astype(np.int16)
     return Spoken(samples, rate, tuple(_segments(ends, len(samples) / rate, "arpabet")))

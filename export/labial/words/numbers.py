@@ -329,7 +329,6 @@ def _is_coded(digits: str) -> bool:
 
 
 def _say_digits(said: Said, text: str, place: int) -> None:
-    """Says digits one by one."""
     for offset, digit in enumerate(text):
         if digit.isdigit():
             said.say(_UNITS[int(digit)], place + offset)

@@ -138,23 +138,20 @@ def load(path: PathLike) -> WordTables:
     """Reads tables. Raises ModelError, with the file, for any other content."""
     try:
         return _load(path)
-    except ModelError as error:
+    except OSError as error:
+        raise ModelError(f"{os.fspath(path)}: {error.strerror or error}") from None
+    except (ModelError, ArrayError, ValueError, RecursionError) as error:
         raise ModelError(f"{os.fspath(path)}: {error}") from None
 
 
 def _load(path: PathLike) -> WordTables:
     names = (*_ARRAYS, "words", "about")
-    try:
-        found = read_zip(path, [f"{name}.npy" for name in names], limits.WORDS)
-        missing = [name for name in names if f"{name}.npy" not in found]
-        expect(not missing, f"not tables of words: no array {', '.join(missing)}")
-        content = {name: array(name, found[f"{name}.npy"]) for name in names}
-        about = json.loads(content["about"].astype(np.uint8).tobytes().decode("utf-8"))
-        words = content["words"].astype(np.uint8).tobytes().decode("ascii").split("\n")
-    except OSError as error:
-        raise ModelError(str(error.strerror or error)) from None
-    except (ArrayError, ValueError, RecursionError) as error:
-        raise ModelError(str(error)) from None
+    found = read_zip(path, [f"{name}.npy" for name in names], limits.WORDS)
+    missing = [name for name in names if f"{name}.npy" not in found]
+    expect(not missing, f"not tables of words: no array {', '.join(missing)}")
+    content = {name: array(name, found[f"{name}.npy"]) for name in names}
+    about = json.loads(content["about"].astype(np.uint8).tobytes().decode("utf-8"))
+    words = content["words"].astype(np.uint8).tobytes().decode("ascii").split("\n")
     numbers = {name: content[name].astype(np.int64) for name in _ARRAYS}
     expect(all(column.ndim == 1 for column in numbers.values()), "an array has more than one axis")
     expect(numbers["format"].tolist() == [FORMAT], f"not format {FORMAT} of tables of words: train them again")

@@ -158,10 +158,9 @@ class _Reader:
 
     def read_at(self, place: int) -> int:
         """Reads what begins at a place; returns the place behind it."""
-        said, context, here = self.said, self.context, self.simple[place]
-        before = said.at(place - 1)
+        said, here = self.said, self.simple[place]
         said.foreign |= here == FOREIGN
-        if context.closing:
+        if self.context.closing:
             return self._skip(place)
         if here == BLANK:
             self.end_word()
@@ -172,7 +171,7 @@ class _Reader:
             return self._read_letters(place)
         if numbers.is_sum(said, place):
             return numbers.read_sum(said, place)
-        return self._read_sign(place, here, before)
+        return self._read_sign(place, here, said.at(place - 1))
 
     def end_word(self) -> None:
         """A blank, or the end of the text."""
@@ -416,12 +415,9 @@ class _Reader:
             context.after = "with"
         elif small == "o" and after == "with":
             said.say("out", place)
-        elif small in _PLACES and before not in (";", "&"):
+        elif (small in _PLACES or small in _CALLS) and before not in (";", "&"):
             self._spell(run, places)
-            context.after, context.shouting = "place", run.isupper()
-        elif small in _CALLS and before not in (";", "&"):
-            self._spell(run, places)
-            context.after, context.shouting = "call", run.isupper()
+            context.after, context.shouting = "place" if small in _PLACES else "call", run.isupper()
         elif small in _MEANINGS and before not in (";", "&"):
             if _MEANINGS[small] == "-":
                 said.say_names(small, places, False)
@@ -436,17 +432,19 @@ class _Reader:
         return False
 
     def _read_date(self, run: str, name: str, places: Sequence[int], after: str, is_pointed: bool) -> None:
-        """Reads a month or a day, whose name the run is or begins.
-
-        Names that are words otherwise are dates behind the number of a day, next to another date and, but for Sat and
-        Sun, with a point; if none of this holds, what follows may correct them.
-        """
+        """Reads a month or a day, whose name the run is or begins. Names that are words otherwise are dates behind the
+        number of a day, next to another date and, but for Sat and Sun, with a point; if none of this holds, what
+        follows may correct them."""
         context, place = self.context, places[0]
         if after == "date":
             self.said.correct(place)
         is_sure = (run[:3] not in _DOUBTFUL or after in ("date", "day")
                    or (is_pointed and run[:3] not in _DOUBTFUL[-2:]))
-        context.after = self._month(place, after) if name in numbers.MONTHS else "day"
+        context.after = "month" if name in numbers.MONTHS else "day"
+        if name in numbers.MONTHS and after in ("one", "number") and context.tail:  # an ordinal, and no day follows
+            self.said.take_back()
+            numbers.say_ordinal(self.said, str(context.day), place)
+            context.after = ""
         if run == name:
             self._spell(run, places)
         elif is_sure or not context.after:
@@ -460,14 +458,6 @@ class _Reader:
         before = len(self.said.phonemes)
         self._spell(run, places, is_spelt)
         self.context.tail, self.context.is_old = len(self.said.phonemes) - before, False
-
-    def _month(self, place: int, after: str) -> str:
-        """What a month leaves behind: it makes the number before it an ordinal, or waits for its day."""
-        if after not in ("one", "number") or not self.context.tail:
-            return "month"
-        self.said.take_back()
-        numbers.say_ordinal(self.said, str(self.context.day), place)
-        return ""
 
     def _spell(self, run: str, places: Sequence[int], is_spelt: bool = False) -> None:
         if is_spelt:
@@ -497,10 +487,8 @@ class _Reader:
 
 
 def _run_at(simple: str, place: int) -> Tuple[str, List[int]]:
-    """Letters that belong together, up to a capital behind a small one, and their places, with that behind them.
-
-    Of a letter that is drawn out, as in "sooo", one is read, or two of e and o within a word, as in "goood".
-    """
+    """Letters that belong together, up to a capital behind a small one, and their places, with that behind them. Of a
+    letter that is drawn out, as in "sooo", one is read, or two of e and o within a word, as in "goood"."""
     found = _RUN.match(simple, place)
     assert found is not None
     run, places, here = "", [place], place
@@ -528,10 +516,8 @@ def _date_of(run: str) -> str:
 
 
 def _roman(run: str, is_named: bool) -> int:
-    """The number of Roman numerals up to 29, or 0.
-
-    They are three letters or more, II, or two capitals behind a name or what is numbered.
-    """
+    """The number of Roman numerals up to 29, or 0. They are three letters or more, II, or two capitals behind a name or
+    what is numbered."""
     found = _ROMAN.fullmatch(run.upper())
     if not found or len(run) < 2 or (len(run) == 2 and found[2] != "II" and not (is_named and run.isupper())):
         return 0

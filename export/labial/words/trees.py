@@ -153,8 +153,6 @@ class Tree:
 
 
 class _Growth:
-    """A tree in the making."""
-
     def __init__(self, samples: Samples, asked: Asked) -> None:
         self.asked, self.samples = asked, samples
         self.present, self.local = np.unique(samples.labels, return_inverse=True)
