@@ -189,13 +189,14 @@ def resample(episode: Episode, fps: int) -> Resampled:
         raise LabialError(f"episode {episode.name} has no segments")
     origin = episode.segments[0].start
     # The nearest integer, halves up, also where binary fractions fall just short of a half.
-    ends = np.floor((np.array([segment.end for segment in episode.segments]) - origin) * fps + 0.5 + 1e-6).astype(int)
+    ends = np.floor((np.array([segment.end for segment in episode.segments]) - origin) * fps + 0.5 + 1e-6)
+    ends = ends.astype(np.int64)
     counts, total = np.diff(ends, prepend=0), int(ends[-1])
     if total == 0:
         raise LabialError(f"episode {episode.name} is shorter than a frame")
     moments = np.array([(segment.start + segment.end) / 2 if segment.apex is None else segment.apex
                         for segment in episode.segments])
-    first = ends - counts
-    apexes = np.clip(np.floor((moments - origin) * fps + 1e-6).astype(int), first, first + np.maximum(counts, 1) - 1)
+    first, apexes = ends - counts, np.floor((moments - origin) * fps + 1e-6).astype(np.int64)
+    apexes = np.clip(apexes, first, first + np.maximum(counts, 1) - 1)
     frames = sampled(episode.times, episode.frames, fps, total, origin)
     return Resampled(frames, counts, np.minimum(apexes, total - 1))

@@ -38,9 +38,7 @@ class Entry:
     def plain(self) -> Dict[str, Any]:
         """The fields by their names in small letters without underscores; of two that are then alike, the first."""
         if self._plain is None:
-            self._plain = {}
-            for key, value in self.fields.items():
-                self._plain.setdefault(plain_name(key), value)
+            self._plain = {plain_name(key): value for key, value in reversed(list(self.fields.items()))}
         return self._plain
 
     def inner(self, value: Any, number: Optional[int] = None) -> Optional[Entry]:

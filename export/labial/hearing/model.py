@@ -230,13 +230,9 @@ def _texts(data: bytes) -> Dict[str, Any]:
 def with_even_sides(model: HearingModel) -> HearingModel:
     """The model with both sides of the mouth at the mean of what it has for each of them, exactly: the mean of two
     linear outputs is one, which both sides have."""
-    made = {name: getattr(model, name).copy()
-            for name in ("fap_weight", "fap_bias", "fap_mean", "fap_scale", "closed", "closing")}
-    scale = made["fap_scale"]
+    made = {name: getattr(model, name).copy() for name, shape in _ARRAYS.items() if shape[0] == "F"}
     for pair in map(list, SIDES):
-        share = scale[pair] / scale[pair].sum()
-        for name in ("fap_weight", "fap_bias"):
-            made[name][pair] = share @ made[name][pair]
-        for name in ("fap_mean", "fap_scale", "closed", "closing"):
-            made[name][pair] = made[name][pair].mean()
+        share = made["fap_scale"][pair] / made["fap_scale"][pair].sum()
+        for name, value in made.items():
+            value[pair] = share @ value[pair] if name in ("fap_weight", "fap_bias") else value[pair].mean()
     return replace(model, **made)

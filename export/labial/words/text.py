@@ -181,11 +181,6 @@ class _Reader:
             if not self.context.left:
                 self.context.closing = ""
 
-    def _forget(self) -> str:
-        """What was said last is no matter any more; returns what it was."""
-        after, self.context.after = self.context.after, ""
-        return after
-
     # ---- Tags and stage directions
 
     def _skip(self, place: int) -> int:
@@ -197,8 +192,7 @@ class _Reader:
         return place + 1
 
     def _open(self, closing: str, place: int) -> int:
-        self.context.closing, self.context.left = closing, _DIRECTION
-        self._forget()
+        self.context.closing, self.context.left, self.context.after = closing, _DIRECTION, ""
         return place + 1
 
     def _is_tag(self, place: int) -> bool:
@@ -219,10 +213,9 @@ class _Reader:
         if not found or signs.is_inside(follows) or len(found[0]) > _LONGEST_VERB:
             return False
         word = found[0].lower()
-        if (closing in (follows, "]") and word in _ALONE) or word in _DIRECTIONS:
-            return True
-        return (closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
-                and not word.endswith("ss") and word not in _NOT_VERBS)
+        return (closing in (follows, "]") and word in _ALONE) or word in _DIRECTIONS or (
+            closing == "*" and follows == BLANK and found[0] == word and len(word) > 3 and word.endswith("s")
+            and not word.endswith("ss") and word not in _NOT_VERBS)
 
     # ---- Signs
 
@@ -239,7 +232,8 @@ class _Reader:
         if self.context.after in ("date", "day", "place") and here in ",-/" and before != BLANK and not self.address:
             self.context.named = False
             return place + 1
-        after, self.context.tail, self.context.named = self._forget(), 0, False
+        after = self.context.after
+        self.context.after, self.context.tail, self.context.named = "", 0, False
         if after in ("call", "phone") and here in "(+):":
             self.context.after = after
         if here == "-" and after in ("one", "number") and re.match("[A-Za-z]{2}", self.simple[place + 1 :]):
@@ -307,8 +301,8 @@ class _Reader:
     def _read_letters(self, place: int) -> int:
         while _STUTTER.match(self.simple, place) and not signs.is_inside(self.said.at(place - 1)):
             place += 2
-        before, named = self.said.at(place - 1), self.context.named
-        after, self.context.named = self._forget(), False
+        before, named, after = self.said.at(place - 1), self.context.named, self.context.after
+        self.context.named, self.context.after = False, ""
         pointed = _POINTED.match(self.simple, place)
         if pointed:
             return self._read_pointed(pointed[0], place, after)
