@@ -43,14 +43,13 @@ def with_apexes(segments: Sequence[Segment], samples: np.ndarray, rate: float) -
 
 
 def read_wave(path: PathLike) -> Tuple[np.ndarray, int]:
-    """The samples of a WAV file of 16 bits, (N,) float64, the mean of its channels, and their rate. Raises DataError
-    for any other file."""
+    """The mean (N,) of the channels of a WAV file of 16 bits, and its rate. Raises DataError for any other file."""
     try:
         with open(path, "rb") as file, wav.Sound(file) as sound:
             if sound.getsampwidth() != 2:
                 raise DataError(path, None, f"samples of {8 * sound.getsampwidth()} bits, not of 16")
-            data = b"".join(wav.blocks(sound))
-            samples = np.frombuffer(data[: len(data) // (2 * sound.getnchannels()) * 2 * sound.getnchannels()], "<i2")
+            data, size = b"".join(wav.blocks(sound)), 2 * sound.getnchannels()
+            samples = np.frombuffer(data[: len(data) // size * size], "<i2")
             return samples.reshape(-1, sound.getnchannels()).mean(axis=1), sound.getframerate()
     except OSError as error:
         raise DataError(path, None, error.strerror or str(error)) from None

@@ -96,8 +96,7 @@ def read_laugh(path: PathLike, phone_set: PhoneSet = LAUGHTER) -> Optional[Tuple
 
 
 class Resampled(NamedTuple):
-    """The T frames of an episode with S segments, at a fixed rate. Frame t covers t/fps to (t + 1)/fps seconds from the
-    start of the first segment."""
+    """The T frames of an episode with S segments, at a fixed rate from the start of the first segment on."""
 
     motion: np.ndarray  #: (T, 13) float64 FAP
     length: np.ndarray  #: (S,) int64 frames of each segment, T in all; 0 for one that is too short for a frame

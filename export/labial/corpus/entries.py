@@ -140,8 +140,7 @@ def documents(path: PathLike, text: str, most: Optional[int] = None,
 
 
 def loads(path: PathLike, line: Optional[int], text: str) -> Any:
-    """JSON; raises JSONDecodeError, and DataError for what is nested deeper than `MESSAGE_NESTING` levels or has a
-    number of too many digits."""
+    """JSON; raises JSONDecodeError, and DataError beyond `MESSAGE_NESTING` levels or for endless digits."""
     try:
         found = json.loads(text)
         if not _nests_deeper(found, MESSAGE_NESTING):

@@ -48,8 +48,7 @@ class Source:
 @dataclass(frozen=True)
 class Episode:
     """One utterance or bout of laughter. `times` is (T,), seconds, strictly increasing; `frames` is (T, 13), float64,
-    FAP units relative to the neutral mouth; `segments` follow each other without gaps or overlaps (readers fill gaps
-    with silence)."""
+    FAP units relative to the neutral mouth; `segments` follow each other without gaps or overlaps."""
 
     name: str
     times: np.ndarray

@@ -92,8 +92,7 @@ def longest_of(names: Mapping[str, str]) -> Dict[str, int]:
 
 def nearest(names: Mapping[str, str], longest: Mapping[str, int], label: str, silence: str, neutral: str) -> str:
     """A phoneme for a label without a meaning: silence for text in brackets, and for labels of nothing but marks,
-    digits and punctuation; else the first known part of its first 32 bytes, scanning from the left, and the longest
-    there; else `neutral`."""
+    digits and punctuation; else the first known part of its first 32 bytes, the longest there; else `neutral`."""
     label = label.strip(_BLANKS)
     if len(label) > 1 and label[0] + label[-1] in ("<>", "[]", "()", "{}", "++", "**", "##"):
         return silence
@@ -112,8 +111,7 @@ def nearest(names: Mapping[str, str], longest: Mapping[str, int], label: str, si
 def entries(names: Mapping[str, Mapping[str, str]]) -> List[Tuple[str, str, Tuple[str, ...]]]:
     """The names of each set of labels as one table: name, phoneme, and the sets in which that name means it. The table
     leaves out names that mean the same when their marks are dropped. It is sorted by the names' bytes; a name of
-    several meanings occurs once for each, in the order of `names`' sets, so that the first one applies if no set is
-    named."""
+    several meanings occurs once for each, in the order of `names`' sets, of which the first one is the default."""
     table = []
     for name in sorted({name for known in names.values() for name in known}, key=str.encode):
         meanings = _meanings(names, name)

@@ -257,8 +257,7 @@ def _spelt_out(found: re.Match[str]) -> str:
 
 
 def _by_pinyin(word: str) -> List[str]:
-    """The phonemes of Chinese characters or of pinyin, with or without tones; other words in Latin letters are
-    English."""
+    """The phonemes of Chinese characters or of pinyin, with or without tones; other Latin letters are English."""
     word = _NUMBER.sub(_spelt_out, _THOUSANDS.sub("", word))
     text = _pinyin(word) if HAN.search(word) else word
     found: List[str] = []

@@ -46,45 +46,33 @@ class PhoneSet:
     def names(self, labels: str = AUTO) -> Dict[str, str]:
         """Every label that has a meaning, and that meaning, in one of `LABEL_SETS` or in any of them. The phonemes' own
         labels are known in every set, unless the IPA or X-SAMPA means other sounds by them. A lone digit is a phoneme
-        only in X-SAMPA; if no set is named, it is more likely an error. The result is cached and must not be
-        changed."""
-        if labels not in self._names:
-            self._names[labels] = self._names_of(labels)
+        only in X-SAMPA; if no set is named, it is more likely an error. The result must not be changed."""
         return self._names[labels]
 
     @cached_property
     def _names(self) -> Dict[str, Dict[str, str]]:
-        return {}
-
-    @cached_property
-    def _longest(self) -> Dict[str, Dict[str, int]]:
-        return {}
-
-    def _names_of(self, labels: str) -> Dict[str, str]:
         own = {label: label for label in self.phonemes}
-        if labels == "arpabet":
-            return {**self.aliases[labels], **own}
-        if labels != AUTO:
-            return {**own, **self.aliases[labels]}
         known: Dict[str, str] = {}
         for item in reversed(LABEL_SETS):
             known.update(self.aliases[item])
-        return {**{label: phoneme for label, phoneme in known.items() if label not in tuple("0123456789")}, **own}
+        known = {label: phoneme for label, phoneme in known.items() if label not in tuple("0123456789")}
+        return {**{labels: {**own, **table} for labels, table in self.aliases.items()},
+                "arpabet": {**self.aliases["arpabet"], **own}, AUTO: {**known, **own}}
+
+    @cached_property
+    def _longest(self) -> Dict[str, Dict[str, int]]:
+        return {labels: longest_of(names) for labels, names in self._names.items()}
 
     def resolve(self, label: str, labels: str = AUTO) -> Optional[str]:
-        """The phoneme that `label` means in the set `labels`, or None: as it stands, else without stress, length and
-        other marks."""
+        """The phoneme that `label` means in the set `labels`, or None: as it stands, else without marks."""
         return find(self.names(labels), label)
 
     def nearest(self, label: str, labels: str = AUTO, first: str = "") -> str:
-        """A phoneme for any label: its meaning, in the set `first` before `labels`, or the most similar phoneme; schwa
-        if no part of it is known."""
+        """A phoneme for any label: its meaning, in the set `first` before `labels`, the most similar one, or schwa."""
         names = self.names(labels)
         known = find_first((self.names(first), names) if first else (names,), label)
         if known is not None:
             return known
-        if labels not in self._longest:
-            self._longest[labels] = longest_of(names)
         return nearest(names, self._longest[labels], label, self.silence, self.names().get("ə", self.silence))
 
 

@@ -151,8 +151,7 @@ def _common_deviation(names: Sequence[str], moments: Dict[str, Tuple[np.ndarray,
 
 
 def brought_to(corpus: Sequence[Episode], silence: str, mean: np.ndarray, deviation: np.ndarray) -> List[Episode]:
-    """The corpus with each recording's mean and standard deviation per channel, outside `silence`, brought to these,
-    (13,) FAP each."""
+    """The corpus with each recording's `mean` and `deviation` (13,), FAP, outside `silence`, brought to these."""
     moments = {name: _moments(frames) for name, frames in _sounding(corpus, silence).items()}
     return [_brought(item, moments[item.source.recording], mean, deviation) for item in corpus]
 

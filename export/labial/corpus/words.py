@@ -136,8 +136,7 @@ def words_of_characters(characters: Sequence[str], starts: Sequence[int], ends: 
 
 
 def characters_apart(items: Iterable[Tuple[str, float, Optional[float]]]) -> List[Tuple[str, float, float]]:
-    """The same for a voice, which is told characters one after the other: with blanks of no length around each
-    character of Chinese."""
+    """The same for a voice, which is told characters one by one: with blanks of no length around those of Chinese."""
     found: List[Tuple[str, float, float]] = []
     before = ""
     for text, start, end in items:
@@ -182,8 +181,7 @@ def _written(words: Sequence[str], language: str) -> List[str]:
 
 
 def words_of(text: str) -> List[str]:
-    """The words of a text, as :func:`words_of_characters` finds them, but with its tags. The last one is empty if it
-    cannot go on."""
+    """The words of a text, as in :func:`words_of_characters`, and its tags; the last is empty if it cannot go on."""
     words = [""]
     for character in _whole(text):
         if _ends(words[-1], character):
@@ -280,8 +278,7 @@ def _numbers(stretches: Iterable[str], how: Pronunciation) -> Dict[str, Sequence
 
 
 def _written_out(digits: str, language: str) -> Optional[str]:
-    """A number in words; four digits from 1100 to 2099 are a year. None where num2words does not know the language, or
-    the number is too large for it."""
+    """A number in words, a year from 1100 to 2099; None for a language or a size that num2words does not know."""
     from num2words import num2words
 
     plain = digits.replace(",", "")

@@ -172,8 +172,7 @@ def check_folder(path: PathLike, name: Optional[PathLike] = None) -> None:
 
 
 def _followed(path: PathLike) -> str:
-    """The absolute path of `path`, with links followed except those of /proc, which refer to open files (/dev/stdout,
-    /dev/fd/3)."""
+    """The absolute path of `path`; links are followed except those of /proc, which are open files (/dev/stdout)."""
     target = os.fsdecode(path)
     if not os.path.basename(target):
         raise LabialError(f"{target}: not the name of a file")

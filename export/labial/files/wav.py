@@ -89,8 +89,7 @@ class Phase:
         self._warned = False
 
     def cancels(self, samples: np.ndarray, full_scale: float = 32768.0) -> bool:
-        """Whether the sound up to and with these samples (N, C) is one whose channels cancel each other, so that the
-        first is to be taken alone."""
+        """Whether the channels of the sound up to and with these samples (N, C) cancel each other."""
         numbers = samples.astype("float64") * (32768.0 / full_scale)
         self._each += float((numbers**2).sum()) / max(1, samples.shape[1])
         self._mean += float((numbers.mean(axis=1) ** 2).sum())

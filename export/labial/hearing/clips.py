@@ -113,8 +113,7 @@ def read(folder: PathLike, cache: PathLike, jobs: int = 1,
          told: Optional[Callable[[int, int], None]] = None) -> List[Clip]:
     """The clips of a folder; texts are aligned in `jobs` processes, results are kept in the folder `cache`. Sounds that
     their text does not fit, and texts that are not English words, are left out with a warning. `told` receives how many
-    sounds are done, and how many there are. Raises DataError as :func:`find`, for timings that cannot be read, and if
-    no clip remains."""
+    sounds are done, and of how many. Raises DataError as :func:`find`, for wrong timings, and if no clip remains."""
     work = [(sound, item, _kept(cache, sound, item)) for sound, item in find(folder)]
     missing = [row for row in work if row[1].text is not None and not os.path.exists(row[2])]
     if missing:

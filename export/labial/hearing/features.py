@@ -58,8 +58,7 @@ def mel(frequency: np.ndarray) -> np.ndarray:
 
 
 def places() -> np.ndarray:
-    """(129,) where each bin lies between the bands' edges: 0 is the lower end of band 0, 1 its peak, 2 its upper end
-    and the peak of band 1."""
+    """(129,) where each bin lies between the bands' edges: 0 is the lower end of band 0, 1 its peak, 2 its end."""
     ends = mel(np.array([LOWEST, HIGHEST]))
     return (mel(np.arange(WINDOW // 2 + 1) * (RATE / WINDOW)) - ends[0]) / (ends[1] - ends[0]) * (BANDS + 1)
 

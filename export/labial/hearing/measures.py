@@ -129,8 +129,7 @@ def pooled(figures: Sequence[Figures], shares: Sequence[float]) -> Figures:
 
 
 def delay(clips: Sequence[Judged], most: int = 6) -> int:
-    """By how many frames, `most` at most, the heard opening lags behind the true one: where the mean correlation is
-    largest."""
+    """By how many frames, `most` at most, the heard opening lags behind the true one, by the mean correlation."""
     def shifted(true: np.ndarray, heard: np.ndarray, lag: int) -> float:
         count = len(true) - abs(lag)
         one = opening(true)[max(-lag, 0) :][:count]

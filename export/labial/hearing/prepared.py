@@ -126,8 +126,7 @@ def with_pauses(samples: np.ndarray, segments: Sequence[Segment], before: float,
 
 
 def _key(clips: Sequence[Clip], takes: int, seed: int) -> str:
-    """A name for what `prepare` makes: of the sounds' names, sizes and times, their segments, the voice whose frames
-    are learned, and the options."""
+    """A name for what `prepare` makes: of the sounds' files and segments, the voice to be learned, and options."""
     rows = []
     for clip in clips:
         status = os.stat(clip.sound)

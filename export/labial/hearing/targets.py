@@ -49,8 +49,7 @@ def classes(timings: Sequence[Tuple[str, int]], count: int) -> np.ndarray:
 
 
 def touching(shown: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """(T,) bool: where lips touch in p, b or m, by Labial's frames (T, 13) and their classes (T,). A rest does not
-    count."""
+    """(T,) bool: where lips touch in p, b or m, but not at rest, by Labial's frames (T, 13) and their classes (T,)."""
     return (opening(shown) <= TOUCHING) & (found == CLASSES.index(CLOSED))
 
 

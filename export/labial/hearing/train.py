@@ -33,8 +33,7 @@ _SHIFT_MAX, _MOST = 15, 127
 
 
 def rounded(weight: torch.Tensor) -> torch.Tensor:
-    """A weight (rows, n) as the library rounds it, w = q / 2^s with one s for each row; its gradient is that of the
-    weight itself."""
+    """A weight (rows, n) as the library rounds it, q / 2^s with one s for each row; its gradient stays the weight's."""
     with torch.no_grad():
         most = weight.abs().amax(dim=1, keepdim=True).clamp(min=1e-9)
         scale = torch.exp2(torch.floor(torch.log2(_MOST / most)).clamp(max=_SHIFT_MAX))
@@ -130,8 +129,7 @@ class Learner(nn.Module):  # type: ignore[misc, unused-ignore]
 def restore(learner: Learner, model: HearingModel, mean: np.ndarray, scale: np.ndarray) -> None:
     """Gives a network what a model hears; its frames become those of `mean` and `scale` (13,). A network with more
     units has the model's in front; the others begin at random, and nothing hears them yet. Of memories that reach
-    elsewhere the taps count that both have. Raises LabialError for a model with more units or another number of
-    blocks."""
+    elsewhere the taps count that both have. Raises LabialError for more units or another number of blocks."""
     units, own = len(model.last_bias), learner.plan.units
     if units > own or len(model.memories) != len(learner.plan.memories):
         raise LabialError(f"a network of {own} units in {len(learner.plan.memories)} blocks cannot begin with a model "

@@ -4,6 +4,6 @@
     entries         letters to     questions  trees and   bytes        lib/words/NAME.c
                     phonemes       and cuts   exceptions
 
-``questions`` defines what a tree may ask of a letter, and ``decoder`` reads a word from the trees as they were trained,
-not from the bytes; so it is independent of the packing and of the C, which are compared with it.
+``tables`` reads a word from the trees as they were trained, not from the bytes: the packing and the C are compared with
+it.
 """

@@ -95,8 +95,7 @@ def _check(tables: WordTables) -> None:
 
 
 def _check_shape(tables: WordTables) -> None:
-    """Raises ModelError unless every node but the roots is below exactly one other, and none below more than
-    `_DEEPEST`."""
+    """Raises ModelError unless every node but the roots is below one other, and none below more than `_DEEPEST`."""
     for letter in range(1, len(LETTERS)):
         question, yes, no, _ = tables.nodes_of(letter)
         depth = [0] + [-1] * (len(question) - 1)

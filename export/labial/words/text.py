@@ -354,8 +354,7 @@ class _Reader:
         return numbers.read_range(self.said, end)
 
     def _read_run(self, run: str, places: Sequence[int], after: str, before: str, named: bool) -> bool:
-        """Reads letters that belong together, of which the last place is behind them; returns whether a point there
-        belongs to them."""
+        """Reads letters that belong together, whose last place is behind them; tells whether a point there is theirs."""
         said, context, small, place = self.said, self.context, run.lower(), places[0]
         follows = said.at(places[-1])
         shouting, context.shouting = context.shouting, False
@@ -510,8 +509,7 @@ def _date_of(run: str) -> str:
 
 
 def _roman(run: str, is_named: bool) -> int:
-    """The number of Roman numerals up to 29, or 0. They are three letters or more, II, or two capitals behind a name or
-    what is numbered."""
+    """The number of Roman numerals up to 29: three letters or more, II, two capitals behind what `is_named`; or 0."""
     found = _ROMAN.fullmatch(run.upper())
     if not found or len(run) < 2 or (len(run) == 2 and found[2] != "II" and not (is_named and run.isupper())):
         return 0
