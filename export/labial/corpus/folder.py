@@ -111,15 +111,13 @@ def read_folder(path: PathLike, phone_set: PhoneSet) -> List[Episode]:
         raise DataError(path, None, "no such folder")
     frames: Dict[str, PathLike] = {}
     timings: Dict[str, PathLike] = {}
+    tables = {".csv": frames, ".lab": timings, ".textgrid": timings}
     for file in _files(Path(path)):
         suffix, stem = Path(file).suffix.lower(), Path(file).stem
-        if suffix not in (".csv", ".lab", ".textgrid"):
-            continue
-        table = frames if suffix == ".csv" else timings
-        if stem in table:
-            other = Path(table[stem]).relative_to(path)
-            raise DataError(file, None, f"there is also {other}; which of them to use is not clear")
-        table[stem] = file
+        other = tables[suffix].setdefault(stem, file) if suffix in tables else file
+        if other is not file:
+            where = Path(other).relative_to(path)
+            raise DataError(file, None, f"there is also {where}; which of them to use is not clear")
     for name in sorted(set(frames) ^ set(timings)):
         if name in frames:
             raise DataError(frames[name], None, f"no {name}.lab or {name}.TextGrid with its phonemes")

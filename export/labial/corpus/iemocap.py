@@ -111,12 +111,10 @@ def bridge_gaps(times: np.ndarray, markers: np.ndarray) -> np.ndarray:
     share = missing.any(axis=1).mean()
     if share > MOST_MISSING:
         raise ValueError(f"in {share:.0%} of the frames a lip or chin marker or the head is missing")
-    result = markers.copy()
-    step = float(np.median(np.diff(times)))
+    result, step = markers.copy(), float(np.median(np.diff(times)))
     for number in np.flatnonzero(missing.any(axis=0)):
-        known = np.flatnonzero(~missing[:, number])
-        edges = np.concatenate([[times[0] - step], times[known], [times[-1] + step]])
-        gap = float(np.diff(edges).max()) - step
+        known = ~missing[:, number]
+        gap = float(np.diff(times[known], prepend=times[0] - step, append=times[-1] + step).max()) - step
         if gap > LONGEST_GAP + 1e-6:
             raise ValueError(f"marker {_MARKERS[number]} is missing for {gap:.2f} s")
         for axis in range(3):

@@ -228,8 +228,7 @@ def _smooth(signal: np.ndarray, sigma: float) -> np.ndarray:
 def _follow(effort: np.ndarray, intensity: float) -> np.ndarray:
     """The smile, 0..1: rises with the loudness of laughing within 0.2 s, sinks over 2.5 s, never below a faint one."""
     target = np.maximum(effort**0.8, 0.12 * intensity)
-    smile = np.empty_like(target)
-    level = 0.5 * target[0]
+    smile, level = np.empty_like(target), 0.5 * target[0]
     for index, goal in enumerate(target):
         level += (goal - level) * _STEP / (200 if goal > level else 2500)
         smile[index] = level

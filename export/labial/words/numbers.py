@@ -234,11 +234,10 @@ def _read_phone(said: Said, place: int, _: bool) -> Optional[int]:
     found = found or _PHONE.match(said.simple, place)
     if not found and said.at(place - 1) == "(":
         found = _AREA.match(said.simple, place)
-    if not found:
-        return None
-    _say_digits(said, found[0], place)
-    said.context.after = "phone" if found[0].isdigit() else ""
-    return found.end()
+    if found:
+        _say_digits(said, found[0], place)
+        said.context.after = "phone" if found[0].isdigit() else ""
+    return found and found.end()
 
 
 def _read_group(said: Said, place: int, called: str) -> Optional[int]:
@@ -308,10 +307,9 @@ def _read_share(said: Said, place: int, is_counted: bool) -> Optional[int]:
 
 def _read_feet(said: Said, place: int, _: bool) -> Optional[int]:
     found = _FEET.match(said.simple, place)
-    if not found:
-        return None
-    said.say(" ".join([*cardinal(found[1]), "foot", *cardinal(found[2])]), place)
-    return found.end()
+    if found:
+        said.say(" ".join([*cardinal(found[1]), "foot", *cardinal(found[2])]), place)
+    return found and found.end()
 
 
 def _read_decade(said: Said, place: int, _: bool) -> Optional[int]:

@@ -184,15 +184,12 @@ def labels_by_trees(tables: WordTables, letters: Sequence[int], sounds: Sequence
     they hold where the letter's tree has a label for them."""
     labels = [0] * len(letters)
     for place in reversed(range(len(letters))):
-        forced = _label_of(tables, letters, place, sounds) if sounds else None
-        if forced is not None:
-            labels[place] = forced
-            continue
         values, node = features(letters, place, labels), 0
         question, yes, no, label = tables.nodes_of(letters[place])
         while question[node] >= 0:
             node = yes[node] if answer(question[node], values, tables.sounds) else no[node]
-        labels[place] = label[node]
+        forced = _label_of(tables, letters, place, sounds) if sounds else None
+        labels[place] = label[node] if forced is None else forced
     return labels
 
 

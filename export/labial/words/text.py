@@ -354,7 +354,7 @@ class _Reader:
         return numbers.read_range(self.said, end)
 
     def _read_run(self, run: str, places: Sequence[int], after: str, before: str, named: bool) -> bool:
-        """Reads letters that belong together, whose last place is behind them; tells whether a point there is theirs."""
+        """Reads letters that belong together, whose last place is behind them; whether a point there is theirs."""
         said, context, small, place = self.said, self.context, run.lower(), places[0]
         follows = said.at(places[-1])
         shouting, context.shouting = context.shouting, False
