@@ -72,7 +72,6 @@ def hear(model: HearingModel, sound: np.ndarray) -> Heard:
 
 
 def hear_energies(model: HearingModel, energies: np.ndarray, count: int) -> Heard:
-    """The same for the first `count` frames of log energies (n, 24), which reach as far as the network looks ahead and
-    smoothing waits for."""
+    """The same for the first `count` frames of log energies (n, 24), which reach as far ahead as is looked."""
     result = closed(model, run(model, normalise(energies).reshape(len(energies) // HOPS, HOPS * BANDS)))
     return Heard(result.scores[:count], result.closed[:count], smoothed(result.faps[: count + SMOOTHING])[:count])

@@ -24,8 +24,7 @@ _CLASS = {phoneme: CLASSES.index(class_of(phoneme)) for phoneme in SPEECH.phonem
 def durations(segments: Sequence[Segment], speed: float = 1.0) -> List[Tuple[str, int]]:
     """Phonemes with their milliseconds, without gaps from time 0 on, of `segments` that are said `speed` times as fast.
     Rounding does not add up."""
-    found: List[Tuple[str, int]] = []
-    last = 0
+    found, last = [], 0
     for item in segments:
         for end, label in ((item.start, SPEECH.silence), (item.end, item.label)):
             stop = round(1000.0 * end / speed)

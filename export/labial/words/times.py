@@ -7,6 +7,7 @@ Weights are whole numbers: 64 for a millisecond, and factors in 1/256, rounded d
 
 from __future__ import annotations
 
+from itertools import accumulate
 from typing import List, Sequence
 
 from labial.corpus.phonesets import VOWELS
@@ -59,8 +60,5 @@ def weights(word: Sequence[int], pause: bool) -> List[int]:
 
 def ends(weights_: Sequence[int], milliseconds: int) -> List[int]:
     """When each phoneme ends, milliseconds from the word's beginning: the last one at its end."""
-    total, here, result = sum(weights_), 0, []
-    for weight in weights_:
-        here += weight
-        result.append((here * milliseconds + total // 2) // total)
-    return result
+    total = sum(weights_)
+    return [(here * milliseconds + total // 2) // total for here in accumulate(weights_)]

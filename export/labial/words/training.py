@@ -126,11 +126,10 @@ def _exceptions(tables: WordTables, entries: Sequence[Entry], aligned: Sounds, c
                 most: int) -> Dict[str, Tuple[Tuple[int, int], ...]]:
     """The first `most` words of `common` that are read as none of their pronunciations, with the labels that make them
     the first one that is aligned."""
-    label = {sound: number for number, sound in enumerate(tables.sounds)}
     given: Dict[str, Tuple[int, ...]] = {}
     for entry, sounds in zip(entries, aligned):
-        if sounds is not None and entry.word not in given:
-            given[entry.word] = tuple(label[sound] for sound in sounds)
+        if sounds is not None:
+            given.setdefault(entry.word, tuple(map(tables.sounds.index, sounds)))
     known = pronunciations(entries)
     found: Dict[str, Tuple[Tuple[int, int], ...]] = {}
     for word in dict.fromkeys(common):
