@@ -65,14 +65,10 @@ def write_tables(directory: PathLike) -> None:
 
 
 def check_limits(tables: HearingTables) -> None:
-    """Raises ModelError for a model whose memory is longer than the library's, and for the name of a class with other
-    characters than letters, digits and underscores."""
+    """Raises ModelError for a model whose memory is longer than the library's."""
     for block in tables.blocks:
         expect(2 <= block.memory.taps <= 16, f"a memory has {block.memory.taps} taps, not 2 to 16")
     expect(tables.rows <= 255, f"the memories have {tables.rows} rows together, not up to 255")
-    for name in tables.classes:
-        expect(name.isascii() and name.replace("_", "").isalnum(),
-               f"the class {name!r:.40} has other characters than letters, digits and underscores")
 
 
 def grouped(dense: Dense) -> Dense:
@@ -155,7 +151,10 @@ extern const char *const {tables.name}_classes[{upper}_CLASSES];
 
 
 def source(tables: HearingTables) -> str:
-    """NAME.c: the tables."""
+    """NAME.c: the tables. Raises ModelError where the name of a class cannot be a C string as it is."""
+    for name in tables.classes:
+        expect(name.isascii() and name.replace("_", "").isalnum(),
+               f"the class {name!r:.40} has other characters than letters, digits and underscores")
     opens, closes, _ = _limit(tables)
     parts = [_comment(tables, f"{tables.name}.c - the"), f'#include "{tables.name}.h"\n']
     parts += [f"\n{opens}"[:-1]] if opens else []

@@ -115,19 +115,26 @@ def levels(energies: np.ndarray, begin: float = LEVEL_BEGIN) -> np.ndarray:
     return result
 
 
+def crop_levels(energies: np.ndarray) -> np.ndarray:
+    """(..., n) the level in each hop of log2 energies (..., n, 24) that are cut out of sounds: nothing is known of what
+    was before."""
+    mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
+    fallen = DECAY * np.arange(mean.shape[-1])
+    return np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST)
+
+
 def normalise(energies: np.ndarray) -> np.ndarray:
     """Features of a sound's log2 energies (n, 24), of the same shape, float32, -2.25 .. 2.75."""
-    return _relative_to(levels(energies), energies)
+    return relative_to(levels(energies), energies)
 
 
 def normalise_crops(energies: np.ndarray) -> np.ndarray:
-    """The same of crops (..., n, 24), which begin within sounds: nothing is known of what was before."""
-    mean = np.asarray(energies, dtype=np.float64).mean(axis=-1)
-    fallen = DECAY * np.arange(mean.shape[-1])
-    return _relative_to(np.maximum(np.maximum.accumulate(mean + fallen, axis=-1) - fallen, LEVEL_LEAST), energies)
+    """The same of crops (..., n, 24), which begin within sounds."""
+    return relative_to(crop_levels(energies), energies)
 
 
-def _relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
+def relative_to(level: np.ndarray, energies: np.ndarray) -> np.ndarray:
+    """Features of log2 energies (..., n, 24) at levels (..., n)."""
     return ((np.clip(energies - level[..., None], *RANGE) + OFFSET) / SCALE).astype(np.float32)
 
 
