@@ -14,7 +14,7 @@ from typing import Callable, Dict, Iterator, List, Sequence, Tuple
 from measure import baseline, records
 from measure.boards import BOARDS
 from measure.core import Figure
-from measure.pages import Sentence, count, decimal, row, sentence, share, word
+from measure.pages import Sentence, count, decimal, lines, row, sentence, share, word
 from measure.sizes import BESIDE
 from measure.sources import Sources, Table, Talkers, mean_and_error, number
 
@@ -450,6 +450,13 @@ def streams(source: Sources) -> Iterator[Sentence]:
     yield sentence("twice as much for a word; {} KB of code (Cortex-M4, `-Os`)", _kilobytes(code, 1))
 
 
+def timings(source: Sources) -> Iterator[Sentence]:
+    yield lines("| service | what it reports | `--from` |\n|---|---|---|",
+                (f"| {service['title']} | {', '.join(told['kind'] for told in service['tells'])} | `{name}` |"
+                 for name, service in source.services.items() if service["tells"][-1]["kind"] in ("words", "characters")
+                 and name not in ("azure", "polly", "words")))
+
+
 #: Every page with figures.
 PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "README.md": readme, "DESIGN.md": design, "export/RESULTS.md": results, "docs/arduino.md": arduino,
@@ -457,4 +464,4 @@ PAGES: Dict[str, Callable[[Sources], Iterator[Sentence]]] = {
     "docs/experiments.md": experiments, "docs/figures.md": costs, "docs/hearing.md": hearing,
     "docs/laughing.md": laughing, "docs/method.md": method, "docs/packages.md": packages, "docs/porting.md": porting,
     "docs/python.md": python, "docs/reproduction.md": reproduction, "docs/servos.md": servos,
-    "docs/streams.md": streams, "docs/words.md": words}
+    "docs/streams.md": streams, "docs/timings.md": timings, "docs/words.md": words}

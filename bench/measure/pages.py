@@ -25,13 +25,14 @@ class Sentence:
 
     text: str
     figures: Tuple[str, ...]
+    figure: str = _FIGURE
 
     def pattern(self) -> re.Pattern[str]:
         """What finds the text whatever its figures are."""
         parts = [re.sub(r"(\\?\s)+", r"\\s+", re.escape(part)) for part in self.text.split("{}")]
         if len(parts) != len(self.figures) + 1:
             raise ValueError(f"{len(self.figures)} figures for {self.text!r}")
-        return re.compile(r"(?<![\w.])" * self.text.startswith("{}") + _FIGURE.join(parts))
+        return re.compile(r"(?<![\w.])" * self.text.startswith("{}") + self.figure.join(parts))
 
 
 def sentence(text: str, *figures: Union[str, float]) -> Sentence:
@@ -42,6 +43,11 @@ def sentence(text: str, *figures: Union[str, float]) -> Sentence:
 def row(head: str, *cells: Union[str, float]) -> Sentence:
     """A row of a table: its first cell, and the figures of all others."""
     return sentence(f"| {head} |" + " {} |" * len(cells), *cells)
+
+
+def lines(before: str, found: Iterable[str]) -> Sentence:
+    """Lines behind the line `before`, up to a blank one."""
+    return Sentence(before + "{}\n", ("".join(f"\n{line}" for line in found),), r"((?:\n.+)*)")
 
 
 def count(value: float) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tempfile
 from pathlib import Path
 from statistics import fmean, stdev
-from typing import Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from measure.core import Figure, run
 from measure.pages import share
@@ -106,6 +107,8 @@ class Sources:
                 self._bench[one.target, one.figure] = one
         self._records = records
         self.results = Results((root / "export" / "RESULTS.md").read_text(encoding="utf-8"))
+        path = root / "export" / "labial" / "corpus" / "services.json"
+        self.services: Dict[str, Dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["services"]
 
     def bench(self, figure: str, target: str = "m0") -> float:
         try:

@@ -13,7 +13,7 @@ from typing import Callable, NoReturn, TextIO, cast
 
 from labial.errors import LabialError
 
-#: Characters of the beginning and of the end of a long message that are shown: names in a file may be of any length.
+#: Characters of the beginning and of the end of a long message that remain: names in a file may be of any length.
 _SHOWN = 1500, 400
 
 

@@ -127,6 +127,19 @@ def test_generated_table_is_the_float_rig(tmp_path: Path, description: Callable[
             tmp_path / "made.c")
 
 
+def test_float_rig_by_hand(tmp_path: Path) -> None:
+    """The reference itself: two servos worked out on paper, in Maestro's units."""
+    (tmp_path / "hand.toml").write_text(
+        'unit = "quarter_us"\n[output.jaw]\nfrom = "opening"\nneutral = 1400\nfull = 1900\n'
+        "[output.corner]\nfrom = { fap53 = 0.5, fap3 = 0.1 }\nneutral = 1500\ngain = 2\ninvert = true\n"
+        "minimum = 1300\nmaximum = 1600\n")
+    rig = read(tmp_path / "hand.toml", "hand")
+    frames = np.zeros((3, 13))
+    frames[1, [0, 3, 4, 5]] = 200, 60, -360, 40  # opening 300; 0.5 * 40 + 0.1 * 200 = 40
+    frames[2, [4, 5]] = -900, 1000
+    assert expected(rig, convert(rig), frames).tolist() == [[5600, 6000], [6600, 5680], [7600, 5200]]
+
+
 @pytest.mark.parametrize("path", EXAMPLES, ids=[path.stem for path in EXAMPLES])
 def test_examples_are_what_the_command_writes(tmp_path: Path, path: Path) -> None:
     """A description that was changed without its table would show."""

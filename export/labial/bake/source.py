@@ -85,7 +85,7 @@ class Motion(NamedTuple):
 
     frames: np.ndarray  #: (T, 13) FAPs, float64
     pauses: np.ndarray  #: (T,) bool: in a pause of `PAUSE` or more
-    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds, where the phonemes are known
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds, where there are phonemes
 
 
 def read_track(source: Source) -> Motion:

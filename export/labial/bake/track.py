@@ -84,7 +84,7 @@ def parts_of(pauses: np.ndarray, longest: Optional[int]) -> List[Part]:
 
 def header(name: str, source: str, rig: Rig, table: Sequence[TableOutput], motion: Motion,
            cut: Optional[Sequence[Part]] = None) -> str:
-    """NAME.h: the bytes, the constants of their units and the calls that play them. `source` is told in its comment.
+    """NAME.h: the bytes, the constants of their units and the calls that play them. Its comment names `source`.
     With `cut` the track has parts, one or more, each of which can be begun with."""
     upper, count = name.upper(), len(table)
     data = as_bytes(rig, table, motion.frames, motion.shares)

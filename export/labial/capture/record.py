@@ -157,7 +157,7 @@ def _with_sound(path: Path, segments: Sequence[Segment]) -> Tuple[Segment, ...]:
     except DataError:
         raise
     except LabialError as error:
-        warnings.warn(f"{error}; the middle of each phoneme is taken for its apex", stacklevel=1)
+        warnings.warn(f"{error}; the middle of each phoneme counts as its apex", stacklevel=1)
         return tuple(segments)
 
 
@@ -202,7 +202,7 @@ class Lag:
 
     seconds: float  #: negative: earlier
     confidence: float  #: 0 .. 1
-    closures: int  #: p, b and m that it was told by
+    closures: int  #: p, b and m that it was measured on
 
 
 def estimate(episodes: Sequence[Episode]) -> Lag:
@@ -249,7 +249,7 @@ def _peak(sums: np.ndarray) -> float:
 
 
 def advice(lag: Lag, offset: float) -> List[str]:
-    """What is to be said of a lag that was found after the picture was taken as `offset` seconds late: lines."""
+    """The lines that report a lag that was found after a correction of `offset` seconds."""
     if lag.closures < LEAST_CLOSURES:
         return [f"sound and picture: {lag.closures} p, b, m are too few to tell whether they are together"]
     when = "together" if abs(lag.seconds) < _STEP / 2 else (

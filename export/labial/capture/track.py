@@ -20,7 +20,7 @@ from labial.files.frames import spans_told
 from labial.files.outputs import writing
 from labial.sound.video import length, pictures
 
-#: Landmarks (478, 3) in pixels and mouthPucker score, NaN where it is not known, of each face of a picture.
+#: Landmarks (478, 3) in pixels and mouthPucker score, NaN where unknown, of each face of a picture.
 Faces = List[Tuple[np.ndarray, float]]
 #: Faces that are looked for in a picture.
 MOST_FACES = 4
@@ -114,7 +114,7 @@ def _points(face: Iterable[Any], picture: np.ndarray) -> np.ndarray:
 
 
 def _scores(points: np.ndarray, seen: List[Faces]) -> np.ndarray:
-    """(T,) scores of the faces whose landmarks were taken."""
+    """(T,) scores of the faces that have landmarks."""
     scores = np.full(len(points), np.nan)
     for number, faces in enumerate(seen):
         for own, score in faces:

@@ -48,7 +48,7 @@ def add_source(command: argparse.ArgumentParser) -> None:
 
     try:
         known: Optional[Tuple[str, ...]] = names()
-    except LabialError:  # without the library, which whoever reads timings is told of
+    except LabialError:  # without the library; readers of timings report that
         known = None
     command.add_argument("--from", dest="source", choices=known, metavar="FORMAT",
                          help=f"format of the timings: {', '.join(known or ())} (default: told by the file's contents)")

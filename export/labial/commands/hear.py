@@ -1,4 +1,4 @@
-"""``labial hear``: motion from the sound of speech, and from what it says where that is known or can be found."""
+"""``labial hear``: motion from the sound of speech, and from its words where they are given or found."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class _Words(NamedTuple):
     """What a sound says."""
 
     timings: List[Tuple[str, float]]  #: phonemes with their milliseconds
-    share: float  #: of the sound's frames in those that are shown
+    share: float  #: of the sound's frames in the mixed ones
     unsure: List[Tuple[float, float]]  #: seconds in which the words may be others, so that the sound alone is heard
 
 

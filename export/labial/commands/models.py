@@ -130,7 +130,7 @@ def _export_hearing(options: argparse.Namespace) -> None:
     for path in emit.write(tables, options.output):
         print(path)
     print(f"flash {emit.flash_bytes(tables)} B, workspace {emit.workspace_bytes(tables)} B, "
-          f"a frame is known {20 * (tables.ahead + SMOOTHING + 1)} ms after its begin")
+          f"a frame is ready {20 * (tables.ahead + SMOOTHING + 1)} ms after its begin")
 
 
 def _export_words(options: argparse.Namespace) -> None:

@@ -36,7 +36,7 @@ class Malformed(Exception):
 
 @cache
 def names() -> Tuple[str, ...]:
-    """The formats, of which the first one, auto, is told by the first line. Raises LabialError without the library."""
+    """The formats, of which the first one, auto, looks at the first line. Raises LabialError without the library."""
     return texts(library().timings_name)
 
 

@@ -109,7 +109,7 @@ class WordStream:
         checked(library().words_init(self._block, own.place if own else None, offset))
 
     def push(self, text: str, start: int, end: Optional[int]) -> None:
-        """A word from `start` to `end`, None where that is not known."""
+        """A word from `start` to `end`, None if that is unknown."""
         data = _encoded(text)
         checked(library().words_push(self._block, data, len(data), start, _NO_END if end is None else end), text)
 
@@ -124,7 +124,7 @@ class WordStream:
         checked(library().words_end(self._block))
 
     def take(self) -> List[Tuple[str, int]]:
-        """The phonemes that are known, with their milliseconds."""
+        """The phonemes that are complete, with their milliseconds."""
         found: List[Tuple[str, int]] = []
         out = (ctypes.c_uint32 * 2)()
         while checked(library().words_next(self._block, out)) == OK:

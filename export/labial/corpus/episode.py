@@ -68,7 +68,7 @@ class Episode:
 
     def unseen(self, silence: str) -> List[Tuple[float, float]]:
         """The stretches, in seconds, whose motion is unknown: gaps over `UNSEEN`, and what lies outside the motion if
-        phonemes other than `silence` do by as much. In silence the mouth may be held at rest."""
+        phonemes other than `silence` do by as much. In silence the mouth may rest."""
         import numpy as np
 
         times = self.times

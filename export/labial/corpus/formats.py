@@ -1,4 +1,4 @@
-"""Phoneme timings in any format: which there are, by which name, suffix or content each is told, and its reader.
+"""Phoneme timings in any format: the list of formats, how to recognise each by name, suffix or content, and its reader.
 
 Files of messages that speech services report become segments, in seconds, as the readers of
 :mod:`labial.corpus.timings` make them. Sounds, as from Piper and Kokoro, are characters of the IPA that become
@@ -196,7 +196,7 @@ def suffixes() -> Dict[str, str]:
 def read_timings(path: PathLike, source: Optional[str] = None, how: Pronunciation = PLAIN,
                  offset: float = 0.0, tier: Optional[str] = None) -> List[SourceSegment]:
     """Reads timings in the format `source`, one of `names()`; without it, in the one that the suffix tells, else
-    the content. Where words are told, `how` says how they are pronounced. `offset` seconds are added to all times; what
+    the content. `how` says how words are pronounced. `offset` seconds are added to all times; what
     that moves before the beginning is cut off. `tier` names the tier of a TextGrid."""
     path = stored(path)
     form = source or suffixes().get(Path(path).suffix.lower()) or _told_by_content(path)

@@ -134,7 +134,7 @@ def _say_unspeakable(word: str, language: str) -> None:
 
 
 def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
-    """The phonemes of words, as they sound in their sentence where that can be told.
+    """The phonemes of words, as they sound in their sentence where espeak-ng shows it.
 
     espeak-ng names a single letter, as "e acute" for the Portuguese for "is", unless another word follows.
     """

@@ -219,7 +219,7 @@ def _motion(random: np.random.Generator, phonemes: List[_Phoneme], intensity: fl
 
 
 def _smooth(signal: np.ndarray, sigma: float) -> np.ndarray:
-    """A Gaussian blur of `sigma` milliseconds: a gesture begins before its sound and outlasts it. Edges are held."""
+    """A Gaussian blur of `sigma` milliseconds: a gesture begins before its sound and outlasts it. Edges repeat."""
     reach = int(3 * sigma / _STEP) + 1
     kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) * _STEP / sigma) ** 2)
     return np.convolve(np.pad(signal, reach, mode="edge"), kernel / kernel.sum(), mode="valid")

@@ -45,7 +45,7 @@ class PhoneSet:
 
     def names(self, labels: str = AUTO) -> Dict[str, str]:
         """Every label that has a meaning, and that meaning, in one of `LABEL_SETS` or in any of them. The phonemes' own
-        labels are known in every set, unless the IPA or X-SAMPA means other sounds by them. A lone digit is a phoneme
+        labels stand in every set, unless the IPA or X-SAMPA means other sounds by them. A lone digit is a phoneme
         only in X-SAMPA; if no set is named, it is more likely an error. The result must not be changed."""
         return self._names[labels]
 

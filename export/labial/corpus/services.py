@@ -32,7 +32,7 @@ _MISSING = object()
 
 
 class Timed(NamedTuple):
-    """A text in seconds; the end is None where it is not told."""
+    """A text in seconds; the end is None if the service reports none."""
 
     text: str
     start: float

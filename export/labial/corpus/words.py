@@ -55,7 +55,7 @@ class Word(NamedTuple):
 
     text: str
     start: int  #: milliseconds
-    end: Optional[int]  #: None where it is not known
+    end: Optional[int]  #: None if unknown
     ends: Tuple[int, ...] = ()  #: of each character of the text, or none
 
 

@@ -2,7 +2,7 @@
 
     python -m labial.evaluate.departures CORPUS [--kind laughter] [--splits N] [--jobs N] -o TABLE.md
 
-Each departure is taken back alone and nothing is trained again, so that a row tells what the others do without it.
+Each row leaves one departure out, without training again, so that it tells what the others do without it.
 docs/method.md, Where the default leaves the paper, has the figures.
 """
 
@@ -53,7 +53,7 @@ def _without_contexts(model: Model) -> Model:
 
 @dataclass(frozen=True)
 class Departure:
-    """A departure and how it is taken back."""
+    """A departure and how to leave it out."""
 
     title: str
     back: Callable[[Model], Model] = lambda model: model

@@ -204,7 +204,7 @@ def _row(sounds: str, condition: str, method: str, rows: Sequence[Judged]) -> Ro
 
 
 def _without(lag: int, true: np.ndarray, heard: np.ndarray, classes: np.ndarray) -> Judged:
-    """Frames with the delay of the heard ones taken out; the last, or first, one is held."""
+    """Frames without the delay of the heard ones; the last, or first, one repeats."""
     return true, heard[np.clip(np.arange(len(heard)) + lag, 0, max(len(heard) - 1, 0))], classes
 
 

@@ -47,7 +47,7 @@ class Loss:
 
     rms: np.ndarray  #: FAP
     largest: np.ndarray  #: FAP
-    extent: np.ndarray  #: FAP: the 1 to 99 percentile range that `rms` is held against
+    extent: np.ndarray  #: FAP: the 1 to 99 percentile range, to compare `rms` with
     path: np.ndarray  #: nats per state that the exported tables' paths lose against the stream's most probable path
     by_design: Optional[Deviation]  #: of a model of the published method
 
@@ -112,7 +112,7 @@ def path_loss(ideal: FloatTables, tables: ExportedTables, stream: Stream) -> np.
 def workspace_bytes(stride: int, channels: int) -> int:
     """LABIAL_WORKSPACE_SIZE of the library's default limits."""
     progress = 44 + 8 * (WINDOW + 1) + (3 + SEARCHED + 3) // 4 * 4
-    shapes = 2 * 4  # of the phoneme that is shown and of the next one
+    shapes = 2 * 4  # of the present phoneme and of the next one
     return channels * (progress + shapes) + (stride * (32 + 2 * channels) + 3) // 4 * 4
 
 

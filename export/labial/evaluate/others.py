@@ -6,7 +6,7 @@
 - **pocketsphinx** is a recogniser: its phone loop finds phonemes without any words, and Labial's bundled voice speaks
   them. It knows the whole sound in advance.
 
-A viseme is shown as Labial's own frame in the middle of a long phoneme of it (`VISEMES`), `PP` as the pose of Labial's
+A viseme stands for Labial's own frame in the middle of a long phoneme of it (`VISEMES`), `PP` as the pose of Labial's
 closed lips, `sil` and weights of 0 as the neutral face; weights mix these as an avatar mixes its shapes. So all methods
 are judged by the same lips.
 """
@@ -98,7 +98,7 @@ def run(node: str, package: str, modules: Path, given: bytes) -> np.ndarray:
 
 @cache
 def poses() -> np.ndarray:
-    """(visemes, 13) FAP units: how each viseme is shown; see the top."""
+    """(visemes, 13) FAP units: the pose of each viseme; see the top."""
     found = np.zeros((len(VISEMES), CHANNELS))
     for row, (viseme, phoneme) in enumerate(VISEMES.items()):
         if viseme == "PP":

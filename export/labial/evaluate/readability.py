@@ -81,7 +81,7 @@ def word_classes(sentences: Sequence[Sequence[str]]) -> List[Tuple[str, ...]]:
 
 
 def features(frames: np.ndarray, begin: int, end: int, fps: int) -> np.ndarray:
-    """(13 POINTS,) FAP: what the reader sees of frames (T, 13) from `begin` to before `end`. Edges are held."""
+    """(13 POINTS,) FAP: what the reader sees of frames (T, 13) from `begin` to before `end`. Edges repeat."""
     margin = MARGIN * fps
     moments = np.linspace(begin - margin, end - 1 + margin, POINTS)
     seen = np.stack([np.interp(moments, np.arange(len(frames)), channel) for channel in frames.T], axis=1)
@@ -92,7 +92,7 @@ class Reader:
     """Reads words of one class."""
 
     def __init__(self, seen: np.ndarray, words: Sequence[str]) -> None:
-        """`seen` (n, 13 POINTS) of tokens whose words, at least two different ones, are known."""
+        """`seen` (n, 13 POINTS) of tokens of known words, at least two different ones."""
         names, number, count = np.unique(np.array(words), return_inverse=True, return_counts=True)
         mean = np.stack([seen[number == index].mean(axis=0) for index in range(len(names))])
         spread = np.sqrt(count / np.maximum(count - 1, 1))

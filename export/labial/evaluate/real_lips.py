@@ -6,7 +6,7 @@ their names, or ``energies.npz`` holds what hearing's front end makes of them: f
 corpus that may not hold sound can be judged by. Episodes without either are left out.
 
 What is measured is the correlation with the real lips in frames of speech. Each clip is centred, as the rest of a face
-in a video is not known well; the frames of a talker's clips count together, and talkers count alike.
+in a video is uncertain; the frames of a talker's clips count together, and talkers count alike.
 """
 
 from __future__ import annotations
@@ -158,7 +158,7 @@ def _padded(clip: Clip) -> np.ndarray:
 
 def methods(model: HearingModel) -> Dict[str, Method]:
     """The network in floating point and in the library's integers, what follows loudness, Labial's own frames of the
-    phonemes, whose times are known, and these with the sound's share (:func:`labial.with_sound`)."""
+    phonemes at their true times, and these with the sound's share (:func:`labial.with_sound`)."""
     tables = quantise(model, "hear")
 
     def integers(clip: Clip) -> np.ndarray:

@@ -223,7 +223,7 @@ def write(outcomes: Sequence[Outcome], options: Options, folder: Path, plots: Se
     return written
 
 
-#: Seconds of an utterance that its trajectories are shown for.
+#: Seconds of an utterance whose trajectories the report shows.
 LONGEST = 5
 #: Methods whose curves are drawn, if they were run; all of them would hide each other.
 DRAWN = ("hmm_synthesis", "paper", "labial")

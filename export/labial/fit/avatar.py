@@ -81,7 +81,7 @@ def _meshes(where: str, file: Gltf) -> List[Mesh]:
     found = []
     for number in moving:
         node = file.nodes[nodes[number][0]]
-        # A skinned mesh ignores its node; it is taken to be bound in the pose in which it was modelled.
+        # A skinned mesh ignores its node; assume that it is bound in the pose in which it was modelled.
         world = np.eye(4) if node.get("skin") is not None else file.transform(nodes[number][0])
         mesh = _mesh(where, file, number, str(node.get("name") or file.meshes[number].get("name") or f"mesh_{number}"),
                      turn @ world[:3, :3], turn @ world[:3, 3])

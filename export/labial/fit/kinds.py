@@ -1,6 +1,6 @@
 """The shapes of an avatar that a rig uses, and the features that each may follow.
 
-ARKit's, Oculus LipSync's and VRM's shapes are known by name. For them a list of sensible pairs keeps a rig readable,
+ARKit's, Oculus LipSync's and VRM's shapes have known names. For them a list of sensible pairs keeps a rig readable,
 such as that mouthPucker follows the corners: solved freely, shapes come to work against each other. Shapes with other
 names may follow everything.
 """

@@ -208,7 +208,7 @@ def _first_peak(z: np.ndarray) -> int:
 
 
 def find(mesh: Mesh, where: str) -> Dict[str, int]:
-    """Vertices of the points that can be told. Raises DataError where the lips are not found."""
+    """Vertices of the points that it finds. Raises DataError where the lips are not found."""
     face = _Face(mesh, where)
     found: Dict[str, int] = {}
     found["inner_upper"], found["inner_lower"] = _inner(face)

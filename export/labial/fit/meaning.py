@@ -87,7 +87,7 @@ class Figures(NamedTuple):
     corners: float  #: error of the corners' height
     upper: float  #: error of the upper lip's height
     lower: float  #: error of the lower lip's height
-    jaw: float  #: error of the chin's height; nan where the chin is not known
+    jaw: float  #: error of the chin's height; nan without a chin
     forward: float  #: error of how far both lips are pushed out
     closed: float  #: share of closures in which the inner lips come nearer than `CLOSED`
     through: float  #: share of closures in which they pass through each other by more than `THROUGH`

@@ -48,7 +48,7 @@ class Motion:
 
     frames: np.ndarray  #: (T, 13) FAP units
     phonemes: Sequence[Tuple[str, int, int]]  #: label, first frame and end, a frame wider than spoken on either side
-    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds in each frame, 0 .. 1; None where they are not known
+    shares: Optional[np.ndarray] = None  #: (T, 15) of the sounds in each frame, 0 .. 1; None if unknown
 
     @property
     def closures(self) -> List[Tuple[int, int]]:

@@ -1,6 +1,6 @@
 """Folders of speech that a network of hearing is trained on or judged by.
 
-A folder has sounds in any depth. What is said in each of them is told by, in this order,
+A folder has sounds in any depth. What each of them says stands in, in this order,
 
 - timings beside it, with the sound's name and a suffix that tells their format (``a.wav`` and ``a.lab``);
 - ``metadata.csv`` in LJ Speech's layout, in the same folder or the one above: lines ``NAME|text|text read aloud``;
@@ -35,7 +35,7 @@ _SPELT = {".textgrid": ".TextGrid"}
 
 
 class Told(NamedTuple):
-    """Where it is told what a sound says: a file of timings, or a text."""
+    """Where a sound's words stand: a file of timings, or a text."""
 
     path: str
     line: Optional[int]  #: in a table
@@ -59,7 +59,7 @@ def find(folder: PathLike) -> List[Tuple[str, Told]]:
 
 
 def untold(folder: PathLike) -> List[Clip]:
-    """The sounds of a folder in the order of their paths, of which no text is known: clips without segments. Raises
+    """The sounds of a folder in the order of their paths, without a text: clips without segments. Raises
     DataError for a folder without sounds."""
     return [Clip(str(sound), ()) for sound in _sounds(folder)]
 

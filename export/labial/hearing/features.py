@@ -13,7 +13,7 @@ its end alone.
 - A sound begins at a level that speech has, `LEVEL_BEGIN` where none is known, and waits for a voice: the level stays
   until a hop comes within `NEAR_LEVEL` of it, or is `RISE` above the quietest hops so far, of which the louder of two
   neighbours counts. Then the level falls by `SEARCH` for each hop until one reaches it. So the noise before the first
-  word is not taken for a voice, and a quiet voice is found soon.
+  word does not count as a voice, and a quiet voice is found soon.
 
 An energy below `FLOOR` counts as that, which is `RANGE` below the least level. So digital silence has the lowest
 features at any time, and speech whose peaks are within 40 dB of full scale has the same features at any gain.

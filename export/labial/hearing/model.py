@@ -55,7 +55,7 @@ class Plan(NamedTuple):
 
     @property
     def ahead(self) -> int:
-        """Frames that must follow a frame before it is known."""
+        """Frames that a frame waits for."""
         return sum(memory.ahead * memory.dilation for memory in self.memories)
 
 

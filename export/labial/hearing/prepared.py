@@ -42,7 +42,7 @@ HELD_OUT = 20
 #: Seconds of silence before and after a clip.
 _PAUSE = (0.05, 0.6)
 #: How often frames count for the score of closed lips: others in speech once; those of p, b, m; of n, t, d, f and v,
-#: which are taken for them; of p, b, m next to silence; of silence, where the face rests anyway.
+#: which sound like them; of p, b, m next to silence; of silence, where the face rests anyway.
 _PRESSED, _RIVALS, _EDGES, _SILENCE = 4.0, 2.5, 8.0, 0.3
 #: Frames to both sides of p, b, m that count as these, and of silence that are next to it.
 _NEAR, _NEXT = 2, 6

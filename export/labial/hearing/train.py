@@ -211,7 +211,7 @@ class Options:
     attribution: str = ""
     start: str = ""  #: SHA-256 of the model that it begins with, if it does not begin anew
     teacher: str = ""  #: and of the one that teaches, if any
-    taught: float = 0.0  #: the teacher's share in what is learned of takes whose truth is known
+    taught: float = 0.0  #: the teacher's share in what is learned of takes that have a truth
 
 
 class _Batch(NamedTuple):

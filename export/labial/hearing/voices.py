@@ -42,7 +42,7 @@ _END, _PHONEME, _RATE, _PITCH, _NORMAL_RATE, _NORMAL_PITCH, _UTF8 = 0, 7, 1, 3, 
 #: Shorter stretches without a label are word boundaries, glottal stops or glides, for which espeak-ng has no IPA: they
 #: belong to the phoneme before. Milliseconds; pauses last 150.
 SHORTEST_PAUSE = 65
-#: Milliseconds: steps in which the sound's level is taken, the longest closure, and what the phoneme before it keeps.
+#: Milliseconds: steps in which to measure the sound's level, the longest closure, and what the phoneme before it keeps.
 _STEP, _LONGEST_CLOSURE, _KEPT = 5, 100, 20
 #: A closure is this many times quieter than the loudest step of the phoneme before it.
 _QUIETER = 16

@@ -33,7 +33,7 @@ _PATIENCE = 0.1
 
 
 class Lips(Voice):
-    """A :class:`labial.Voice`, and beside it the sound, which is heard where no words are known.
+    """A :class:`labial.Voice`, and beside it the sound, which is heard where there are no words.
 
     An utterance without words so far moves by :class:`labial.Hearing`. Its sound is heard when it is due, so that
     sound that has words costs nothing. Where the clock stands, as in a pause, the mouth closes. All arguments are those
@@ -83,7 +83,7 @@ class Lips(Voice):
             self._sounds[-1].is_whole = True
 
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops all that was not shown yet, and eases to the neutral face."""
+        """Drops all frames that are still to come, and eases to the neutral face."""
         super().cancel(milliseconds)
         self._sounds.clear()
         self._closing = min(max(math.ceil(milliseconds * self.fps / 1000 - 1e-6), 1), CANCEL_MAX)
@@ -138,7 +138,7 @@ class Lips(Voice):
 
 
 class _Fade:
-    """The way from what is shown to other motion, in even steps."""
+    """The way from the present face to other motion, in even steps."""
 
     def __init__(self) -> None:
         self.shown = self._start = _NEUTRAL

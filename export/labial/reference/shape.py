@@ -17,7 +17,7 @@ SLOPE_LIMIT = 3.0
 @dataclass(frozen=True)
 class ShapeTables:
     """The mixtures of P phonemes as the run-time reads them: N components, phoneme by phoneme. A
-    :class:`labial.tables.model.Model` has the same members, and so is taken as well."""
+    :class:`labial.tables.model.Model` has the same members, and will do as well."""
 
     component_count: np.ndarray  #: (P,) int64
     log_weight: np.ndarray  #: (N,)

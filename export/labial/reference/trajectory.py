@@ -12,7 +12,7 @@ import numpy as np
 from labial.files.faps import CHANNELS
 from labial.reference.tables import Equation
 
-#: The library's default of LABIAL_WINDOW: frames that are known beyond the delivered ones.
+#: The library's default of LABIAL_WINDOW: frames that it has beyond the delivered ones.
 WINDOW = 3
 
 
@@ -43,7 +43,7 @@ class Forward:
         self._state: Tuple[np.ndarray, ...] = ()
 
     def take(self, terms: Equation, last: bool) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(n, C) each: like :func:`forward`, for the frames whose successor is known, or for all remaining frames if
+        """(n, C) each: like :func:`forward`, for the frames that have a successor, or for all remaining frames if
         `terms`, of at least one frame, are the `last` ones."""
         first = self._kept is None
         terms = terms if self._kept is None else _rows(lambda a, b: np.concatenate([a, b]), self._kept, terms)
@@ -134,7 +134,7 @@ class Solve:
         passed = self._forward.take(terms, last)
         joined = tuple(np.concatenate(pair) for pair in zip(self._passed, passed)) if self._passed else passed
         known = len(joined[0])
-        # The way back to a frame starts before the last one that is known, unless the stream ends there.
+        # The backward pass starts before the last known frame, unless the stream ends there.
         ready = known if last else max(known - 1 - WINDOW - self._stride, 0)
         settled, rho, kappa = joined
         start = starts(known, self._stride, begin=self._begin, channels=settled.shape[1])

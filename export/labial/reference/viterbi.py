@@ -136,7 +136,7 @@ class Decode:
         self._chains, self._stride, self._channels = chains, stride, len(chains.mean)
         self._target = np.zeros((0, self._channels))
         self._end = np.zeros(0, dtype=bool)
-        self._begin = 0  # the frame that these begin with, the first one whose state is not told
+        self._begin = 0  # the frame that these begin with, the first one without a state
         self._blocks = 0  # that are searched
         self._found: Optional[Search] = None
 

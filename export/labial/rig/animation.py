@@ -76,19 +76,19 @@ def arkit(frames: np.ndarray, shares: Optional[np.ndarray] = None) -> Dict[str, 
     return {name: found[name] for name in _ARKIT.values() if name in found}
 
 
-#: Gives values by output for frames (n, 13), shares of their sounds (n, 15) if they are known, and the number of the
+#: Gives values by output for frames (n, 13), shares of their sounds (n, 15) if there are any, and the number of the
 #: first frame, like `outputs`.
 Mover = Callable[["np.ndarray", Optional["np.ndarray"], int], Dict[str, "np.ndarray"]]
 
 
 def _parts_of(frames: np.ndarray) -> Tuple[np.ndarray, Optional[np.ndarray]]:
-    """The FAPs of frames, and the shares of their sounds if they are known."""
+    """The FAPs of frames, and the shares of their sounds if there are any."""
     return frames[:, :CHANNELS], frames[:, CHANNELS:] if frames.shape[1] > CHANNELS else None
 
 
 def _fap_rows(out: TextIO, frames: np.ndarray, first: int, fps: int) -> None:
     """MPEG-4 text: per frame a mask of 68 and the values of the 23 FAPs of the mouth, inner lips (4 to 13) moving as
-    the outer ones (51 to 60), and those of the tongue (43 to 47) where the sounds are known."""
+    the outer ones (51 to 60), and those of the tongue (43 to 47) where there are sounds."""
     import numpy as np
 
     from labial.reference.visemes import tongue

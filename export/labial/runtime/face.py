@@ -24,12 +24,12 @@ class Face:
             set_servos(face.tick())
 
     No value changes by more than its `slew` from one tick to the next, nor its change by more than its `acceleration`.
-    Frames are shown one in each tick, `ahead` ticks after they came; of more than `ahead` + 1 that wait, the oldest are
+    A face shows one frame in each tick, `ahead` ticks after it came; of more than `ahead` + 1 that wait, the oldest are
     passed over. Without a frame the servos hold for 5 ticks and go to rest in 6 more, or as their limits allow.
 
     Args:
         rig: a :class:`labial.Rig`, the path of a description, or the name of a built-in rig. Its own state is not used.
-        ahead: frames that follow a frame when it is shown, 0 to 1,000: slow servos need them to close in time.
+        ahead: later frames that a frame waits for, 0 to 1,000: slow servos need them to close in time.
 
     Attributes:
         rig: the rig.
@@ -68,7 +68,7 @@ class Face:
 
     @alone
     def values(self, wanted: Mapping[str, float]) -> None:
-        """Takes a frame whose outputs are known: a value for each, by name, in the rig's unit. They go through the same
+        """Takes a frame as values of the outputs: one for each, by name, in the rig's unit. They go through the same
         limits."""
         numbers = self._numbers(wanted)
         checked(self._library.servos_values(self._address, numbers), "values")

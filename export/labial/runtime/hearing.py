@@ -61,7 +61,7 @@ class Hearing(Closing):
             for frame in hearing.end():
                 show(frame)
 
-    Frame k shows the lips in the 20 ms of sound that begin at 20 k ms, and is known :attr:`latency` later. The sound
+    Frame k shows the lips in the 20 ms of sound that begin at 20 k ms, and is ready :attr:`latency` later. The sound
     should be speech alone; its level does not matter down to peaks of 1/100 of full scale. The face begins and ends at
     rest, and is there in silence.
 
@@ -104,7 +104,7 @@ class Hearing(Closing):
 
     @opened
     def push(self, sound: Sound) -> List[Frame]:
-        """Hears a block of any length, and returns the frames that are known by now. Bytes may end within a sample.
+        """Hears a block of any length, and returns the frames that are ready by now. Bytes may end within a sample.
 
         Raises StreamError after :meth:`end` or :meth:`cancel`; TypeError for anything but int16 or bytes; LabialError
         for an array whose shape does not fit the channels.
@@ -143,7 +143,7 @@ class Hearing(Closing):
     @opened
     def level(self) -> int:
         """The level of the voice: 1/256 of log2, 85 for a decibel (``labial_hear_level()``). A sound begins at that of
-        the sound before. Set it before a sound where it is known; StreamError is raised while one is heard, and
+        the sound before. Set it before a sound if you know it; StreamError is raised while one is heard, and
         for a level out of range."""
         return int(self._library.ears_level(self._address))
 
@@ -197,7 +197,7 @@ class Hearing(Closing):
     @property
     @opened
     def latency(self) -> float:
-        """Seconds from a frame's begin until it is known: .12, with hear_ahead .28."""
+        """Seconds from a frame's begin until it is ready: .12, with hear_ahead .28."""
         return float(self._library.ears_latency(self._address)) / 1000.0
 
     @property
@@ -252,7 +252,7 @@ def _swapped(data: bytes) -> bytes:
     return samples.tobytes()
 
 
-#: The share of the sound's lips that is nearest to people's where the phonemes are known (docs/hearing.md).
+#: The share of the sound's lips that is nearest to people's beside phonemes (docs/hearing.md).
 SHARE = 0.3
 #: Openings of the phonemes' lips, FAP units: up to the first one the sound has no say over lips and jaw, from the
 #: second one on its whole share.

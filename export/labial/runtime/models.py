@@ -31,7 +31,7 @@ class Model:
         name: the bundled model's name, else the file's.
         fps: frames per second.
         phonemes: the label of each phoneme, in the order of their numbers; empty for a model with other phonemes than
-        the bundled ones, which are known only by number. silence: the number of its silence. stride: frames that share
+        the bundled ones, which have numbers alone. silence: the number of its silence. stride: frames that share
         a step of the search; all models of a stream have the same. address: the address of its tables.
     """
 

@@ -17,13 +17,13 @@ from labial.runtime.stream import Stream
 
 #: Phonemes in ARPABET: with blanks between them, or a list.
 Sounds = Union[str, Sequence[str]]
-#: A word, when it begins and when it ends, milliseconds; None for an end that is not known.
+#: A word, when it begins and when it ends, milliseconds; None for an unknown end.
 TimedWord = Tuple[str, float, Optional[float]]
 
 
 def phonemes(text: str, *, own: Optional[Mapping[str, Sounds]] = None, language: str = ENGLISH,
              numbers: bool = False) -> List[str]:
-    """The phonemes of a text, in ARPABET without stress, word after word; silences are not known.
+    """The phonemes of a text, in ARPABET without stress, word after word, without silences.
 
     `own` has words that are pronounced otherwise: ``{"google": "G UW G AH L"}``, or lists of phonemes. `language` is
     "en", which the library reads itself, or what espeak-ng, if it is installed, calls a language or a voice; its
@@ -178,7 +178,7 @@ def read_timings(given: Union[str, os.PathLike[str], TextIO, List[Any], Dict[str
     `given` is the path of a file, an open file, such as :class:`io.StringIO`, or the parsed JSON of a service, a list
     or a dict, or the objects of its client library, such as Piper's chunks. `labels` is the set of the labels, `source`
     the format if it should not be detected. `offset_ms` is added to all times: a positive number for a voice that
-    reports them too early. Where words or characters are told, the other arguments say how they are pronounced, as for
+    reports them too early. For words or characters, the other arguments say how they are pronounced, as for
     :func:`labial.phonemes`. `tier` is the tier of a TextGrid, by its name. Raises DataError with the file and, if
     known, the line.
     """

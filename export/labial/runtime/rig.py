@@ -60,7 +60,7 @@ def one_frame(frame: Faps) -> array[int]:
 
 
 def shares_of(frame: Any) -> bytes:
-    """The 15 shares of a frame's sounds; zeros where they are not known. Raises LabialError for others than 15."""
+    """The 15 shares of a frame's sounds; zeros if unknown. Raises LabialError for others than 15."""
     return _shares(getattr(frame, "visemes", ())) or bytes(VISEMES)
 
 
@@ -179,7 +179,7 @@ class Rig:
         return self._moved(numbers + ahead, (_shares(visemes) or shares_of(faps)) + after)
 
     def ahead(self, frames: Iterable[Faps], count: int) -> Iterator[Values]:
-        """Applies the frames of a stream, each when the `count` frames after it are known: the face is late by as many.
+        """Applies the frames of a stream, each when the `count` frames after it have come: the face is late by as many.
         Yields the values of each frame; those of the last ones when the frames end."""
         if not 0 <= count < 65535:
             raise LabialError(f"a face looks 0 to 65,534 frames ahead, not {count}")
@@ -195,7 +195,7 @@ class Rig:
     def play(self, faps: array[int], sight: int, shares: Union[bytes, bytearray, None] = None) -> array[int]:
         """Moves the face by T frames of 13 FAPs, 16 bits each, one after the other, each with up to `sight` frames in
         sight, itself included, 1 .. 65535: T times N numbers of 32 bits, all outputs of each frame in the unit's whole
-        numbers. `shares` are 15 of the sounds of each frame, if they are known."""
+        numbers. `shares` are 15 of the sounds of each frame, if you have them."""
         first, count = faps.buffer_info()[0], len(faps) // CHANNELS
         known = array("B", shares or b"")
         at = known.buffer_info()[0]

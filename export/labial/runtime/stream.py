@@ -46,7 +46,7 @@ class Frame(_Moment):
         number: counted from 0 since the stream was made; it is due number / fps seconds after the first.
         faps: 13 values, FAP units, in the order of ``labial.files.faps.FAP_NUMBERS``.
         visemes: how much of each sound the frame shows, 15 shares of together 128 in the order of
-        ``labial.tables.visemes.VISEMES``; empty where it is not known.
+        ``labial.tables.visemes.VISEMES``; empty if unknown.
     """
 
     visemes: Tuple[int, ...]

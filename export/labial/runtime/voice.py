@@ -25,7 +25,7 @@ from labial.runtime.models import Model, bundled, expected, set_of
 from labial.runtime.render import Sounds, offset
 from labial.runtime.stream import Frame
 
-#: Room for words and phonemes that are told ahead of the sound: a server is not trusted. A phoneme or character takes
+#: Room for words and phonemes ahead of the sound: a server is not trusted. A phoneme or character takes
 #: one place, a word up to 20 letters two (LABIAL_VOICE_SIZE of include/labial/voice.h).
 PLACES = 20_000
 #: Seconds between two looks at a clock that has not begun.
@@ -40,7 +40,7 @@ _SPOKEN = 10_000
 #: Kinds of items (labial_voice_kind_t), and from when on their times count (labial_voice_times_t).
 _KINDS = {"phonemes": 0, "azure": 1, "polly": 2, "words": 3, "characters": 4}
 _ABSOLUTE, _CHAINED, _JOINED = range(3)
-#: Text, beginning and end of an item in seconds; the end is None where it is not known.
+#: Text, beginning and end of an item in seconds; the end is None if unknown.
 _Item = Tuple[Union[str, int], float, Optional[float]]
 
 
@@ -134,7 +134,7 @@ class Voice(Closing):
 
     @opened
     def begin(self, at: Optional[float] = None, utterance: Optional[str] = None) -> None:
-        """The next utterance, whose sound begins when `at` seconds were heard: times that are told count from there.
+        """The next utterance, whose sound begins when `at` seconds were heard: times count from there.
 
         Without `at` it begins where the former one ends, as far as is known, or now if that is over. `utterance` is
         what the service calls it in its messages; without it, it is that of the first message that tells one. What
@@ -146,21 +146,21 @@ class Voice(Closing):
 
     @opened
     def finish(self) -> None:
-        """Nothing more follows: :attr:`done` tells when all was shown. What is told afterwards nevertheless begins the
+        """Nothing more follows: :attr:`done` tells when the last frame is over. A later message nevertheless begins the
         next utterance. If no message told timings, a warning says so."""
         self._messages.expect_timings()
         self._checked(self._library.voice_finish(self._memory))
 
     @opened
     def cancel(self, milliseconds: float = 200) -> None:
-        """Drops all that is not shown yet, and eases to the neutral face over so many milliseconds, rounded up to whole
-        frames, 1 to 1,000. What is told of the cancelled utterance is ignored until :meth:`begin`, and if the service
-        tells which one that is, also afterwards."""
+        """Drops all frames that are still to come, and eases to the neutral face over so many milliseconds, rounded up
+        to whole frames, 1 to 1,000. Messages of the cancelled utterance are ignored until :meth:`begin`, and if the
+        service tells which one that is, also afterwards."""
         length = min(duration(milliseconds), CANCEL_MAX * 1000.0)
         self._checked(self._library.voice_cancel(self._memory, math.ceil(length - 1e-6)))
         self._since, self._eased = time.monotonic(), 0
 
-    # ---- What is shown
+    # ---- Frames
 
     @opened
     def played(self, seconds: Optional[float]) -> List[Frame]:
@@ -168,7 +168,7 @@ class Voice(Closing):
         to three.
 
         A clock that goes back, or None from one that has not begun, yields none; but while it stands with the sound
-        after :meth:`cancel`, or after :meth:`finish` at the end of what is known, the face comes to rest in time that
+        after :meth:`cancel`, or after :meth:`finish` at the end of the last item, the face comes to rest in time that
         passes. More than a second after the last call, only the latest frame is returned. Raises LabialError for more
         than a year and what is no number.
         """
@@ -233,7 +233,7 @@ class Voice(Closing):
     @property
     @opened
     def stats(self) -> Stats:
-        """What became so far of the messages and of all that was told."""
+        """What became so far of the messages and their items."""
         found = (ctypes.c_uint32 * 3)()
         self._library.voice_counts(self._memory, found)
         read = self._messages.stats
@@ -301,7 +301,7 @@ class _Speaker:
         self._texts: Dict[bytes, OwnWords] = {}
 
     def prepare(self, texts: Sequence[str], joined: bool) -> None:
-        """Asks other programs for what is not known yet, once for all of these texts. Raises LabialError as
+        """Asks other programs for unknown words, once for all of these texts. Raises LabialError as
         :func:`labial.phonemes`."""
         if not self.asks:
             return
@@ -321,7 +321,7 @@ class _Speaker:
             if len(self._texts) > _SPOKEN:
                 self._texts = {}
             wanted = words.stretches_of([said.decode("utf-8", "replace")], (), self._how.language)
-            with suppress(LabialError):  # it said so when the text was told
+            with suppress(LabialError):  # it said so when the text came
                 self.prepare(wanted, False)
             spoken = {word: self._spoken.get(word) for word in wanted}
             known = {word: phonemes for word, phonemes in spoken.items() if phonemes is not None}

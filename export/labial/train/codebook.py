@@ -38,7 +38,7 @@ INITIAL_COUNT = 5.0
 
 
 def features(motion: np.ndarray) -> np.ndarray:
-    """(T, 3) m, delta m and delta-delta m of one channel's motion (T,); the ends are held for the outer frames."""
+    """(T, 3) m, delta m and delta-delta m of one channel's motion (T,); the ends repeat for the outer frames."""
     held = np.concatenate([motion[:1], motion, motion[-1:]])
     return np.stack([motion, (held[2:] - held[:-2]) / 2, held[2:] - 2 * motion + held[:-2]], axis=1)
 

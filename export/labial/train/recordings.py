@@ -124,7 +124,7 @@ def with_pauses_cut(item: Recording, silence: int, ahead: int, fps: int) -> Reco
 
 def _weights(source: Source, silent: np.ndarray, missing: np.ndarray) -> Optional[np.ndarray]:
     """(T, 13) weights of the values of an episode, of which `silent` (T,) are silence, and of `missing` (T,) the
-    motion is not known; None if all are 1."""
+    motion is unknown; None if all are 1."""
     if source == replace(source, weight=1.0, left_out=frozenset(), silences=True) and not missing.any():
         return None
     weight = np.full((len(silent), CHANNELS), source.weight)

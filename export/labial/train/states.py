@@ -146,7 +146,7 @@ def limit_range(precision: np.ndarray, anchor: np.ndarray) -> Tuple[np.ndarray, 
 
 #: Factors of precisions. Static and anchor share the precision from least squares.
 SCALES = Scales(static=1.0, delta=0.1, acceleration=0.1, anchor=1.0)
-#: How many times its variance a target is taken to stray: kernels overlap, so that targets of successive steps err
+#: How many times its variance a target strays: kernels overlap, so that targets of successive steps err
 #: alike and tell less than as many that err by themselves. Chosen, as the number of states, on corpora of other seeds.
 ALIKE = 2.0
 #: The least share of a state's hold that its mean or the target has.

@@ -198,7 +198,7 @@ class _Reader:
     def _is_tag(self, place: int) -> bool:
         """Whether what a square bracket begins is silent: all but the text of a link, behind which an address or the
         number of one stands. Where the end is not in sight, since words come one by one, a first word with a capital
-        and small letters is taken for the text of a link, unless it is a stage direction."""
+        and small letters is the text of a link, unless it is a stage direction."""
         found = _BRACKET.match(self.simple, place)
         assert found is not None
         if self.said.at(place + 1) == BLANK or self.said.at(found.end()) == "[":

@@ -35,7 +35,7 @@ Sounds = Sequence[Optional[Tuple[int, ...]]]
 def train(entries: Sequence[Entry], common: Sequence[str], *, leaves: int = LEAVES, exceptions: int = EXCEPTIONS,
           report: Optional[Report] = None) -> WordTables:
     """The tables of a dictionary; of SOUNDS and the `common` words, in their order, the first `exceptions` that the
-    trees read wrongly become exceptions. `report` is told what is being done."""
+    trees read wrongly become exceptions. `report` gets the steps of the work."""
     report = report or str  # which tells nobody
     tables, aligned, loose = _trees(entries, leaves, report)
     pairs: List[Tuple[Entry, Optional[Tuple[int, ...]]]] = [

@@ -37,7 +37,7 @@ VARIANCE_FLOOR = 1e-3
 
 
 def features(frames: np.ndarray) -> np.ndarray:
-    """(T, 39) m, delta m, delta-delta m of every channel, channel by channel; the ends are held."""
+    """(T, 39) m, delta m, delta-delta m of every channel, channel by channel; the ends repeat."""
     held = np.concatenate([frames[:1], frames, frames[-1:]])
     stacked = [frames, (held[2:] - held[:-2]) / 2, held[2:] - 2 * frames + held[:-2]]
     return np.stack(stacked, axis=-1).reshape(len(frames), -1)
