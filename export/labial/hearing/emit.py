@@ -108,7 +108,7 @@ def workspace_bytes(tables: HearingTables) -> int:
 
 def _comment(tables: HearingTables, what: str) -> str:
     text = (f"{what} model of hearing, {tables.units} units in {len(tables.blocks)} blocks, "
-            f"{20 * (tables.ahead + SMOOTHING + 1)} ms from a frame's begin until it is ready. "
+            f"{20 * (tables.ahead + SMOOTHING + 1)} ms from a frame's begin until it is known. "
             f"Written by labial export {__version__}; do not edit.")
     return block_comment(f"{text} {tables.attribution}" if tables.attribution else text)
 
