@@ -52,7 +52,7 @@ typedef struct {
     const labial_model_t *speech;   /* the model whose phonemes have visemes; null before one was used */
     int32_t state;                  /* result of the last tick */
     uint8_t moved;                  /* whether the last tick delivered a face */
-    uint8_t exact, ended;           /* what mouth_exact() was told; whether no more phonemes will come */
+    uint8_t exact, ended;           /* the argument of mouth_exact(); whether no more phonemes will come */
     uint32_t workspace[LABIAL_WORKSPACE_SIZE(LABIAL_SEARCH_STRIDE_MAX, LABIAL_CHANNELS) / 4u];
 } mouth_t;
 
@@ -143,7 +143,7 @@ FLAT(rig_output) void rig_output(labial_rig_output_t *output, void *more, const 
 FLAT(rig_check) int rig_check(const labial_rig_output_t *outputs, unsigned count);
 
 /* Values of a rig at rest; moved on by the first of `frames` frames (labial_rig_apply_visemes_ahead()); those of a
- * frame alone. `shares` are null where they are not known. */
+ * frame alone. `shares` may be null. */
 FLAT(rig_rest) int rig_rest(const labial_rig_output_t *outputs, unsigned count, int32_t *values);
 FLAT(rig_apply)
 int rig_apply(const labial_rig_output_t *outputs, unsigned count, const int16_t *faps, const uint8_t *shares,
@@ -232,7 +232,7 @@ FLAT(hearing_class) const char *hearing_class(unsigned number, unsigned shown);
 FLAT(ears_init)
 int ears_init(ears_t *ears, const labial_hear_model_t *model, uint32_t samples_per_second, unsigned channels);
 
-/* Milliseconds from the begin of a frame until it is known. */
+/* Milliseconds from the begin of a frame until it is ready. */
 FLAT(ears_latency) uint32_t ears_latency(const ears_t *ears);
 
 /* These write the frames that they deliver to `faps`, 13 numbers each, the shares of their sounds to `visemes`, 15

@@ -150,7 +150,7 @@ export class Track<O extends Output = "faps"> implements Iterable<FrameOf<O>> {
  * stands, time goes on, so that the mouth comes to rest. */
 export function heard(audio: { readonly currentTime: number; readonly ended?: boolean }): number;
 
-/** An object of pages, where the types of pages are known. */
+/** An object of pages, if the program has the types of pages. */
 type Dom<Name extends string> = typeof globalThis extends { [key in Name]: { prototype: infer One } } ? One : unknown;
 
 /** What can be heard: a MediaStream, an <audio> or <video> element, or an AudioNode. */
@@ -200,21 +200,20 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     restart(): void;
     /** How far the mouth moves, as a stream's: from the next frame that is heard it comes nearer to that. */
     articulation(percent: number): void;
-    /** The mouth at a time, by default now, interpolated between two frames; the last one that is known if it is too
+    /** The mouth at a time, by default now, interpolated between two frames; the last one if it is too
      * early to know. The same object each time. Without an AudioContext the time must be given. */
     at(seconds?: number): O extends "faps" ? Float32Array : FrameOf<O>;
-    /** The frames that are known and were not taken, each a new object. Of frames that nobody takes, the last 262,144
-     * stay. */
+    /** The frames that are ready, each a new object. Of frames that nobody takes, the last 262,144 stay. */
     [Symbol.iterator](): IterableIterator<FrameOf<O>>;
-    /** The frames to the end, each as soon as it is known. */
+    /** The frames to the end, each as soon as it is ready. */
     [Symbol.asyncIterator](): AsyncIterableIterator<FrameOf<O>>;
-    /** How much of each sound the frame that was shown last shows, as a stream's `visemes`; taken from the lip classes that
-     * lead in it and beside it. */
+    /** How much of each sound the last frame shows, as a stream's `visemes`, by the lip classes that lead in it and
+     * beside it. */
     readonly visemes: Uint8Array;
     /** The stretches of one lip class that ended since the last call; the label is a phoneme that stands for the class:
      * "M" for p, b, m. */
     segments(): Segment[];
-    /** Number of the frame that was taken last, from 0; -1 before the first. */
+    /** Number of the last frame, from 0; -1 before the first. */
     readonly number: number;
     /** When that frame is due. */
     readonly time: number;
@@ -222,12 +221,12 @@ export class Hearing<O extends Output = "faps"> implements Iterable<FrameOf<O>>,
     readonly now: number | null;
     /** Frames per second. */
     readonly fps: number;
-    /** Seconds from a frame's begin in the sound until it is known: 0.12. */
+    /** Seconds from a frame's begin in the sound until it is ready: 0.12. */
     readonly latency: number;
-    /** Seconds by which the sound of a source is played later, so that lips are known by then; 0 for a sound that is
+    /** Seconds by which the sound of a source is played later, so that lips are ready by then; 0 for a sound that is
      * pushed. */
     readonly delay: number;
-    /** It was ended, cancelled or closed, and every frame was taken. */
+    /** It was ended, cancelled or closed, and has no frame left. */
     readonly done: boolean;
     /** The AudioContext whose clock counts, or null. */
     readonly context: Dom<"AudioContext"> | null;
@@ -269,7 +268,7 @@ export interface TimedWord {
     start: number;
     /** Without it the word lasts until the next one, or as long as such a word usually does. */
     end?: number | null;
-    /** When each of its characters ends, if that is known. */
+    /** When each of its characters ends, if you know that. */
     ends?: Iterable<number> | null;
 }
 
@@ -329,7 +328,7 @@ export class Words {
     /** The formats that read() takes. */
     readonly formats: readonly string[];
     /** Timings of any voice: the JSON of a service, parsed or as text, a message or a list of them in the order of their
-     * arrival, or the text of a `.lab` and its like. The format is told from the content, unless it is named. */
+     * arrival, or the text of a `.lab` and its like. `format` names the format; without it the content tells. */
     read(source: unknown, options?: WordOptions & { format?: string }): Segment[];
     /** What reads the messages of one answer one by one. */
     reader(options?: { format?: string }): MessageReader;
@@ -364,14 +363,14 @@ export interface VoiceOptions<O extends Output = Output> extends WordOptions {
     context?: Dom<"AudioContext">;
 }
 
-/** Lips that follow a voice whose words or phonemes become known while it is heard. Times of what is told are seconds
+/** Lips that follow a voice whose words or phonemes become known while it is heard. Times of messages are seconds
  * from the beginning of the utterance, all others those of the clock. A frame is due when number / fps seconds of the
- * sound were heard; it is final once it was shown. */
+ * sound were heard; it is final once a call has returned it. */
 export class Voice<O extends Output = "faps"> {
     #private;
     private constructor();
     /** Takes a message of the service, parsed, as text or as bytes. Messages without timings are passed over. Throws where
-     * one is malformed; what was known stays known. */
+     * one is malformed; earlier ones stay. */
     feed(message: unknown): void;
     /** Takes a word as it is written; without an end it lasts until the next one, or as long as it usually does. */
     say(text: string, start: number, end?: number | null): void;
@@ -381,7 +380,7 @@ export class Voice<O extends Output = "faps"> {
      * now if that is over. With the clock of an AudioContext or a MediaStream the first call says when the first
      * utterance begins; until then lips rest. A clock that was set back, as that of an element with another sound, counts
      * from there. `utterance` is what the service calls it, if it does: messages of others that are over are dropped.
-     * What was told before its sound begins is moved there: the utterance of this name, or without one the first that
+     * It moves messages that came before their sound begins there: the utterance of this name, or without one the first that
      * waits. */
     begin(at?: number | null, utterance?: string | null): void;
     /** The sound goes on so many seconds later than it would have, because its next piece came too late: lips wait. Only
@@ -390,7 +389,7 @@ export class Voice<O extends Output = "faps"> {
     /** Nothing more follows. If no message told timings, a warning says so. */
     finish(): void;
     /** Drops what is not yet shown and eases to the neutral face over so many milliseconds, by default 200, rounded up to
-     * whole frames, 1 to 1,000. What is told of the cancelled utterance is ignored until begin(). */
+     * whole frames, 1 to 1,000. It ignores messages of the cancelled utterance until begin(). */
     cancel(milliseconds?: number): void;
     /** The frames that became due since the last call, each a new object; usually none to three. More than a second after
      * the last call only the latest one is returned. */
@@ -399,9 +398,9 @@ export class Voice<O extends Output = "faps"> {
     at(seconds?: number | null): FrameOf<O>;
     /** The frames as they become due, until the voice is closed or, after finish(), done; by default by its own clock. */
     follow(clock?: () => number | null | undefined): AsyncIterableIterator<FrameOf<O>>;
-    /** How much of each sound the frame that was shown last shows, as a stream's `visemes`. */
+    /** How much of each sound the last frame shows, as a stream's `visemes`. */
     readonly visemes: Uint8Array;
-    /** Number of the frame that was shown last, from 0; -1 before the first. */
+    /** Number of the last frame, from 0; -1 before the first. */
     readonly number: number;
     /** When that frame was due. */
     readonly time: number;
@@ -411,19 +410,19 @@ export class Voice<O extends Output = "faps"> {
     readonly now: number | null;
     /** Frames per second. */
     readonly fps: number;
-    /** All was shown: after finish(), half a second after the last word, if there was any, also where the clock stops
+    /** Nothing is left: after finish(), half a second after the last word, if there was any, also where the clock stops
      * there; after cancel(), when the face is neutral. */
     readonly done: boolean;
     /** The form of its frames. */
     readonly output: O;
     /** Nothing has begun since cancel(). */
     readonly cancelled: boolean;
-    /** What became so far of the messages: how many there were; words, phonemes and so on that were told and that made no
+    /** What became so far of the messages: how many there were; words, phonemes and so on that came and that made no
      * sense; messages of utterances that are over, and those that came twice. */
     readonly stats: {
         readonly messages: number; readonly told: number; readonly skipped: number; readonly dropped: number;
     };
-    /** "ended": all of the utterance was shown, after finish(). */
+    /** "ended": nothing of the utterance is left, after finish(). */
     addEventListener(type: "ended", listener: (event: { readonly type: string }) => void, options?: { once?: boolean }): void;
     removeEventListener(type: "ended", listener: (event: { readonly type: string }) => void): void;
     /** Frees the memory at once; otherwise the garbage collector does. at() is the neutral face from then on: cancel()
@@ -481,7 +480,7 @@ export class Labial {
     /** FAPs of speaking while laughing: `intensity` is the amount of laughter, `words` how far it gives way to words,
      * both 0 .. 1. */
     blend(speech: ArrayLike<number>, laugh: ArrayLike<number>, intensity: number, words: number, out?: Int16Array): Faps;
-    /** The weights of a face for 13 FAPs, and for the shares of the sounds that they show, if these are known: a tongue,
+    /** The weights of a face for 13 FAPs, and for the shares of the sounds that they show, if you have these: a tongue,
      * teeth and pressed lips need them. */
     convert<F extends Face | Rig>(faps: ArrayLike<number>, output: F, out?: Partial<FrameOf<F>>,
                                   visemes?: ArrayLike<number> | null): FrameOf<F>;

@@ -67,11 +67,11 @@ declare module "labial/labial-face.js" {
      * It is light or dark as `color-scheme` says. CSS variables: --labial-skin, --labial-hair, --labial-lips, --labial-iris,
      * --labial-clothes, --labial-backdrop-top, --labial-backdrop-bottom; `::part(caption)` is the caption. */
     export class LabialFace extends LabialMouth {
-        /** Captions: the words that are spoken, by `position`. They are shown line by line, and in
+        /** Captions: the words that are spoken, by `position`. It shows them line by line, and in
          * a line of several words the one that is spoken is marked. null for none, and cancel() sets that. */
         get words(): readonly TimedWord[];
         set words(words: Iterable<TimedWord> | null);
-        /** The caption that is shown. A text that is set stays until another one, or words, are set. */
+        /** The present caption. A text that is set stays until another one, or words, are set. */
         get caption(): string;
         set caption(text: string | null);
     }
@@ -120,7 +120,7 @@ declare module "labial/attach.js" {
     /** A loaded avatar: a scene of three.js, what its GLTFLoader loads, or a VRM of three-vrm. */
     export type Avatar = { traverse(visit: (node: any) => void): void } | { scene: { traverse(visit: (node: any) => void): void } };
 
-    /** What is shown at a time, seconds. */
+    /** What gives a frame for a time, seconds. */
     export type Source = Track<any> | Hearing<any> | Voice<any> | { at(seconds: number): Readonly<Record<string, number>> };
 
     /** An avatar whose mouth is moved. */
@@ -148,7 +148,7 @@ declare module "labial/attach.js" {
     }
 
     /** Looks for ARKit's, Oculus's (Ready Player Me's) or VRM's names in an avatar. `output` is a rig of its own shapes, made by
-     * labial.rig(), or the face to take if there are several. Throws a LabialError where no names are known. */
+     * labial.rig(), or the face to take if there are several. Throws a LabialError if it knows none of the names. */
     export function attach<O extends Face | Rig = Face>(avatar: Avatar, options?: { output?: O }): Head<O>;
 }
 
