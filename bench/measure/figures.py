@@ -104,7 +104,8 @@ def costs(source: Sources) -> Iterator[Sentence]:
     yield row("worst tick, times the mean", *worst)
     yield sentence("| share of the core at 50 frames/s, speech | {} % | {} % | {} % |",
                    *(decimal(bench("speech: share of the core", target), 1) for target in TARGETS[:3]))
-    yield sentence("Cortex-M0 takes {} cycles for the {}", round(bench("speech: cycles"), -2), bench("speech: mean"))
+    yield sentence("The Cortex-M0 takes {} cycles for the {} instructions", round(bench("speech: cycles"), -2),
+                   bench("speech: mean"))
 
     yield sentence("| | two who speak freely | {} labels, who say commands | all {} |",
                    word(len(talkers["voice"].of(False))), word(len(talkers["voice"].each)))
@@ -145,12 +146,14 @@ _STATES = {"labial_t": ("", " + workspace"),
 
 def design(source: Sources) -> Iterator[Sentence]:
     bench, closures = source.bench, source.record("closures")
-    yield sentence("are at most {} FAP units apart, in all of {} p, b, m", closures["stops: most"], closures["stops"])
+    yield sentence("In contact the outer lips are at most {} FAP units apart, in all of {} p, b, m of eight voices",
+                   closures["stops: most"], closures["stops"])
     yield sentence("Of {} f, v they are {} or more apart in half and {} or more in 95 %", closures["f, v"],
                    closures["f, v: half"], closures["f, v: 95 %"])
     yield sentence("the model has {} bytes;", bench("laughter: model"))
-    yield sentence("every three frames: {} on a Cortex-M0, {} on an M4F, {} on x86-64, where hts_engine takes {} for",
-                   *(bench("MLPG", target) for target in ("m0", "m4", "host")), bench("MLPG by hts_engine", "host"))
+    yield sentence("every three frames: {} on a Cortex-M0, {} on an M4F, {} on x86-64, where hts_engine takes {} for "
+                   "whole units", *(bench("MLPG", target) for target in ("m0", "m4", "host")),
+                   bench("MLPG by hts_engine", "host"))
     yield sentence("A whole tick takes {} instructions on a Cortex-M0; of these the search takes {}, equation 3 {} and "
                    "the targets {}", *(round(value, -2) for value in (bench("speech: mean"), bench("speech: viterbi.c"),
                    bench("speech: trajectory.c"), bench("speech: shape.c"))))
@@ -206,14 +209,18 @@ def reproduction(source: Sources) -> Iterator[Sentence]:
     def mean(table: Table, made: str) -> str:
         return _cell(table[made]["mean"], 4)
 
-    yield sentence("method ({} against {} in the mean of the four parameters), and it is better on unseen words too "
-                   "({} against {}).", *(mean(table, made) for table in (speech, unseen) for made in (HMM, PAPER)))
-    yield sentence("than the published method ({} against {})", mean(laughter, REGRESSION), mean(laughter, PAPER))
-    yield sentence("less error than searching and solving ({} against {})", mean(speech, BLUR), mean(speech, PAPER))
+    yield sentence("On GRID, HMM synthesis is far better than the published method ({} against {} in the mean of the "
+                   "four parameters), and it is better on unseen words too ({} against {}).",
+                   *(mean(table, made) for table in (speech, unseen) for made in (HMM, PAPER)))
+    yield sentence("linear regression is better than the published method ({} against {})", mean(laughter, REGRESSION),
+                   mean(laughter, PAPER))
+    yield sentence("gives less error than searching and solving ({} against {})", mean(speech, BLUR),
+                   mean(speech, PAPER))
 
 
 def python(source: Sources) -> Iterator[Sentence]:
-    yield sentence("The library has {} KB with", _kilobytes(source.bench("shared library with both models", "python")))
+    yield sentence("The library has {} KB with all models and names", _kilobytes(
+        source.bench("shared library with both models", "python")))
 
 
 def porting(source: Sources) -> Iterator[Sentence]:
@@ -222,13 +229,16 @@ def porting(source: Sources) -> Iterator[Sentence]:
         yield sentence(f"| `LABIAL_{name}` | {{}} |", source.limit(f"LABIAL_{name}"))
     window, lag, searched = (source.limit(f"LABIAL_{name}") for name in ("WINDOW", "LAG", "SEARCHED"))
     usual = size()
-    yield sentence("solved ahead of the delivered frame | a frame of delay, {}", size(LABIAL_WINDOW=window + 1) - usual)
+    yield sentence("solved ahead of the delivered frame | a frame of delay, {} bytes of workspace",
+                   size(LABIAL_WINDOW=window + 1) - usual)
     yield sentence("decides a state | a frame of delay, {} bytes of workspace for the first, {} for nine",
                    size(LABIAL_LAG=lag + 1) - usual, size(LABIAL_LAG=lag + 9) - usual)
     more = size(LABIAL_SEARCHED=searched + 8) - usual
     with_lag = size(LABIAL_SEARCHED=searched + 8, LABIAL_LAG=lag + 1) - size(LABIAL_LAG=lag + 1)
-    yield sentence("a step of the search considers | {} bytes of workspace, {} more", more / 8, (with_lag - more) / 8)
-    yield sentence("comes after 80 ms, and the workspace has {} bytes instead of {}.", size(LABIAL_WINDOW=1), usual)
+    yield sentence("a step of the search considers | {} bytes of workspace, {} more for each frame of the lag",
+                   more / 8, (with_lag - more) / 8)
+    yield sentence("With `LABIAL_WINDOW` 1 a frame comes after 80 ms, and the workspace has {} bytes instead of {}.",
+                   size(LABIAL_WINDOW=1), usual)
     found = source.record("window")
     yield sentence("on the 32 sentences of `sentences.flite`, {} seconds:", found["seconds"])
     yield sentence("correlation {} .. {}, mean {}; difference up to {} of a FAP's standard deviation",
@@ -237,7 +247,8 @@ def porting(source: Sources) -> Iterator[Sentence]:
 
 def packages(source: Sources) -> Iterator[Sentence]:
     major, minor = (source.constant("include/labial/labial.h", f"LABIAL_VERSION_{part}") for part in ("MAJOR", "MINOR"))
-    yield sentence("{})` accepts any {}, but not {}.", *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
+    yield sentence("`find_package(labial {})` accepts any {}, but not {}.",
+                   *(f"{major}.{number}" for number in (minor, minor, minor + 1)))
 
 
 def esp32_hear(source: Sources) -> Iterator[Sentence]:
@@ -318,7 +329,8 @@ def words(source: Sources) -> Iterator[Sentence]:
     code = sum(bench(f"code -Os: {name}.c") for name in _WORDS)
     yield sentence("{} KB of code and {} KB of tables in flash, 1 KB of RAM for a stream of words and {} bytes of "
                    "stack", _kilobytes(code, 1), _kilobytes(bench("words: tables")), bench("stack -Os: words.h"))
-    yield sentence("A page fetches {} KB for it, compressed, when it asks for", _kilobytes(bench(_NPM[2], "wasm")))
+    yield sentence("A page fetches {} KB for it, compressed, when it asks for words",
+                   _kilobytes(bench(_NPM[2], "wasm")))
     for what in ("read", "say"):
         cells = [bench(f"words: {kind} to {what} one", target) for target in TARGETS
                  for kind in ("mean", "worst")]
@@ -327,7 +339,8 @@ def words(source: Sources) -> Iterator[Sentence]:
 
 def browser(source: Sources) -> Iterator[Sentence]:
     speech, laughter, timed, small, large = (source.bench(figure, "wasm") for figure in _NPM)
-    yield sentence("{} KB, compressed; a page that laughs fetches {} KB more", _kilobytes(speech), _kilobytes(laughter))
+    yield sentence("A page that speaks fetches {} KB, compressed; a page that laughs fetches {} KB more",
+                   _kilobytes(speech), _kilobytes(laughter))
     yield sentence("the package `labial-words`, {} KB,", _kilobytes(timed))
     yield sentence("the package `labial-hearing`, {} KB.", _kilobytes(small))
     yield sentence("a page fetches {} KB more |", _kilobytes(large - small))
@@ -335,7 +348,8 @@ def browser(source: Sources) -> Iterator[Sentence]:
 
 def servos(source: Sources) -> Iterator[Sentence]:
     found, other = source.record("closures"), source.record("closures of awb")
-    yield sentence("{} us short of 1400 in the median *p, b, m*, and reach it in {} %.", found["short"], found["reach"])
+    yield sentence("a jaw that only followed them would stop {} us short of 1400 in the median *p, b, m*, and reach it "
+                   "in {} %.", found["short"], found["reach"])
     yield sentence("the share of {} *p, b, m* within 10 us of `closed`, in {} sentences by each of eight voices",
                    found["stops"], found["sentences"] / len(records.VOICES))
 
@@ -405,11 +419,14 @@ def results(source: Sources) -> Iterator[Sentence]:
     moves = [number(line["amplitude"]) for made, line in other.items() if made not in ("human", MEAN, FLOAT, DEVICE)]
     yield sentence("It moves wider than any other method ({} of human; others {} to {})",
                    _cell(other[DEVICE]["amplitude"]), share(min(moves)), share(max(moves)))
-    yield sentence("at least as evenly as people do (jitter {}, of which {}", _cell(other[DEVICE]["jitter"]),
+    yield sentence("at least as evenly as people do (jitter {}, of which {} comes from the device's whole FAP units)",
+                   _cell(other[DEVICE]["jitter"]),
                    share(number(other[DEVICE]["jitter"]) - number(other[FLOAT]["jitter"])))
-    yield sentence("(seam {}, people {})", *(decimal(number(other[who]["seam, mean"]), 2) for who in (DEVICE, "human")))
-    yield sentence("A lip-reader trained on people reads {} of the", _cell(other[DEVICE]["with residual"]))
-    yield sentence("({}, people {})", _cell(unseen[DEVICE]["readability"]), _cell(unseen["human"]["readability"]))
+    yield sentence("its motion changes as people's does (seam {}, people {})",
+                   *(decimal(number(other[who]["seam, mean"]), 2) for who in (DEVICE, "human")))
+    yield sentence("A lip-reader trained on people reads {} of the words", _cell(other[DEVICE]["with residual"]))
+    yield sentence("the readability of unseen letters ({}, people {})", _cell(unseen[DEVICE]["readability"]),
+                   _cell(unseen["human"]["readability"]))
     yield sentence("its error on known words is {}, that of its own steps under a Gaussian blur {}, and it closes {} "
                    "of p, b, m. With normalised features the error is {}, and {} close.",
                    *(_cell(diff[made]["mean"], 4) for made in (PAPER, BLUR)), _cell(other[PAPER]["closure"]),

@@ -141,8 +141,9 @@ def _array(path: PathLike, table: Dict[str, np.ndarray]) -> np.ndarray:
     if points.ndim != 3 or points.shape[1] not in _COUNTS or points.shape[2] not in (2, 3):
         raise DataError(path, None, f"landmarks have the shape {points.shape}, not (frames, 468 or 478, 2 or 3)")
     points = _numbers(path, "landmarks", points[:, list(USED)])
-    for frame in np.flatnonzero((np.abs(points) > _LARGEST_COORDINATE).any(axis=(1, 2))):
-        raise DataError(path, None, f"frame {frame}: a coordinate is beyond {_LARGEST_COORDINATE:g}")
+    wrong = (np.abs(points) > _LARGEST_COORDINATE).any(axis=(1, 2))
+    if wrong.any():
+        raise DataError(path, None, f"frame {int(np.argmax(wrong))}: a coordinate is beyond {_LARGEST_COORDINATE:g}")
     return points
 
 
@@ -153,7 +154,9 @@ def _scores(path: PathLike, table: Dict[str, np.ndarray]) -> Optional[np.ndarray
     count = len(table["landmarks"])
     if pucker.shape != (count,):
         raise DataError(path, None, f"pucker has the shape {pucker.shape}, but there are {count} frames")
-    for frame in np.flatnonzero((pucker < 0) | (pucker > 1)):
+    wrong = (pucker < 0) | (pucker > 1)
+    if wrong.any():
+        frame = int(np.argmax(wrong))
         raise DataError(path, None, f"frame {frame}: the score pucker is {pucker[frame]:g}, not within 0 .. 1")
     return pucker
 

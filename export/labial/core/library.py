@@ -71,7 +71,7 @@ def _bound(loaded: ctypes.CDLL) -> Library:
 
 
 def texts(listed: Callable[[int], Any]) -> Tuple[str, ...]:
-    """What a function of the library returns for 0, 1, ..., until it returns NULL."""
+    """What a function of the library returns for 0, 1, ..., until that is NULL or empty."""
     return tuple(text.decode("ascii") for text in takewhile(bool, map(listed, count())))
 
 

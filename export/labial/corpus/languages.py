@@ -148,7 +148,9 @@ def _by_espeak(words: Sequence[str], language: str) -> List[List[str]]:
         places = [place for place in range(first, min(first + _SENTENCE, len(words))) if _WORD.fullmatch(words[place])]
         part = [words[place] for place in places]
         said = _spoken([" ".join(part)], language, " ")
-        for place, phonemes in zip(places, said) if len(said) == len(part) > 1 else ():
+        if len(part) < 2 or len(said) != len(part):
+            continue
+        for place, phonemes in zip(places, said):
             if difflib.SequenceMatcher(None, found[place], phonemes, autojunk=False).ratio() >= _ALIKE:
                 found[place] = phonemes
     return found
